@@ -1,0 +1,1 @@
+"""The autonomy core: trees, in-situ classification, the pool, the runner. Imports no sibling package."""

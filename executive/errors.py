@@ -1,0 +1,47 @@
+"""What can go wrong that a user can mend, and the one error that marks a defect."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+class LongarmError(Exception):
+    """Base of everything a user can fix. Anything else is a defect and keeps its traceback."""
+
+
+@dataclass(frozen=True, order=True)
+class Problem:
+    """One located complaint about an input file; `line` and `column` count from 1."""
+
+    file: str
+    line: int
+    column: int
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}: {self.message}"
+
+
+class ConfigError(LongarmError):
+    """Bad input: carries every problem found, not only the first."""
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        self.problems = tuple(sorted(set(problems)))
+        super().__init__("\n".join(str(p) for p in self.problems))
+
+
+class PluginError(LongarmError):
+    """An entry point could not be loaded or does not keep its contract; names it."""
+
+
+class RecordError(LongarmError):
+    """A run folder lacks what was asked of it, or its record cannot be read."""
+
+
+class NodeRaised(Exception):
+    """A leaf raised: a defect, contained. `path` names the node from the root."""
+
+    def __init__(self, path: str, cause: BaseException) -> None:
+        self.path = path
+        super().__init__(f"{path}: {type(cause).__name__}: {cause}")

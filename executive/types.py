@@ -1,0 +1,303 @@
+"""The values that flow: immutable, SI units, frames in their names.
+
+Quaternions are (x, y, z, w). A quaternion `quat_a_b` rotates vectors from frame b into frame a.
+Rotation errors are small rotation vectors in `site` axes: R_true = exp(d_theta) R_estimate.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Vec2 = tuple[float, float]
+Vec3 = tuple[float, float, float]
+Quat = tuple[float, float, float, float]
+
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
+
+
+class Reason(StrEnum):
+    """Why something ended, in physical terms; recovery is chosen by it."""
+
+    DONE = "done"
+    CANCELLED = "cancelled"
+    TIMEOUT = "timeout"
+    BLOCKED = "blocked"
+    OFF_TRACK = "off_track"
+    OFF_HEADING = "off_heading"
+    OVERSHOOT = "overshoot"
+    UNEXPECTED = "unexpected"
+    NOT_SEEN = "not_seen"
+    POOR_VIEW = "poor_view"
+    UNSTABLE_IMAGES = "unstable_images"
+    IMPLAUSIBLE = "implausible"
+    OUT_OF_REACH = "out_of_reach"
+    TILT = "tilt"
+    TETHER = "tether"
+    DEVICE = "device"
+    NO_STRATEGY = "no_strategy"
+    GUARD = "guard"
+
+
+@dataclass(frozen=True)
+class Outcome(Generic[T_co]):
+    """How an action ended. `value` is what was actually done or measured, also on failure if known."""
+
+    reason: Reason
+    detail: str = ""
+    value: T_co | None = None
+
+    @property
+    def ok(self) -> bool:
+        return self.reason is Reason.DONE
+
+
+class Quality(StrEnum):
+    """What is asked of a localisation."""
+
+    TREND = "trend"  # motion fragments, while moving: coarse and cheap
+    PRECISE = "precise"  # active markers, at rest
+    FAR = "far"  # long averaging, at rest
+
+
+class Source(StrEnum):
+    """Where a pose estimate comes from."""
+
+    PRIOR = "prior"
+    PREDICTION = "prediction"
+    TREND = "trend"
+    MARKERS = "markers"
+
+
+def frozen_array(values: object, shape: tuple[int, ...]) -> Array:
+    """A read-only float64 copy of `values`; ValueError if its shape is not `shape`."""
+    array = np.array(values, dtype=np.float64)
+    if array.shape != shape:
+        raise ValueError(f"got an array of shape {array.shape}, expected {shape}")
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of the plan, in `site`, horizontal [m]."""
+
+    x_m: float
+    y_m: float
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A straight path segment between two way-points, with its margins (paper, section 3.1)."""
+
+    start: Point
+    end: Point
+    on_track_m: float
+    off_track_m: float
+    tolerance_m: float
+    index: int = 0
+
+    @property
+    def length_m(self) -> float:
+        return math.hypot(self.end.x_m - self.start.x_m, self.end.y_m - self.start.y_m)
+
+    @property
+    def bearing_rad(self) -> float:
+        return math.atan2(self.end.y_m - self.start.y_m, self.end.x_m - self.start.x_m)
+
+    def offset(self, x_m: float, y_m: float) -> TrackOffset:
+        """Where (x, y) lies relative to this segment. Beyond its ends the line is extended."""
+        dx, dy = x_m - self.start.x_m, y_m - self.start.y_m
+        c, s = math.cos(self.bearing_rad), math.sin(self.bearing_rad)
+        to_end = (self.end.x_m - x_m, self.end.y_m - y_m)
+        return TrackOffset(
+            along_m=c * dx + s * dy,
+            cross_m=-s * dx + c * dy,
+            remaining_m=math.hypot(*to_end),
+            bearing_to_end_rad=math.atan2(to_end[1], to_end[0]),
+        )
+
+
+@dataclass(frozen=True)
+class TrackOffset:
+    """A position relative to a segment: along it, left of it (positive), and what remains."""
+
+    along_m: float
+    cross_m: float
+    remaining_m: float
+    bearing_to_end_rad: float
+
+
+@dataclass(frozen=True, eq=False)
+class PoseEstimate:
+    """Pose of `body` in `site` at `time_s`, with its 6x6 covariance (position m, rotation rad).
+
+    `track` is the offset from the segment under way, None where there is none.
+    `markers` counts the markers a vision fix rests on (0 for a prediction).
+    """
+
+    time_s: float
+    position_site_m: Vec3
+    quat_site_body: Quat
+    covariance: Array
+    source: Source
+    track: TrackOffset | None = None
+    markers: int = 0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "covariance", frozen_array(self.covariance, (6, 6)))
+
+    @property
+    def x_m(self) -> float:
+        return self.position_site_m[0]
+
+    @property
+    def y_m(self) -> float:
+        return self.position_site_m[1]
+
+    @property
+    def point(self) -> Point:
+        return Point(self.x_m, self.y_m)
+
+    @property
+    def heading_rad(self) -> float:
+        """Direction of the body's x axis projected on the horizontal, from site x, left positive."""
+        x, y, z, w = self.quat_site_body
+        return math.atan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z))
+
+    @property
+    def tilt_rad(self) -> float:
+        """Angle between the body's z axis and the vertical, 0 or more."""
+        x, y, _, _ = self.quat_site_body
+        return math.acos(max(-1.0, min(1.0, 1 - 2 * (x * x + y * y))))
+
+    @property
+    def sigma_position_m(self) -> float:
+        """Largest horizontal standard deviation [m]."""
+        return float(math.sqrt(max(np.linalg.eigvalsh(self.covariance[:2, :2])[-1], 0.0)))
+
+    @property
+    def sigma_heading_rad(self) -> float:
+        return float(math.sqrt(max(self.covariance[5, 5], 0.0)))
+
+    def on(self, segment: Segment | None) -> PoseEstimate:
+        """The same pose, with its offset from `segment` filled in."""
+        offset = None if segment is None else segment.offset(self.x_m, self.y_m)
+        return replace(self, track=offset)
+
+
+@dataclass(frozen=True)
+class TrackReading:
+    """Tracks' telemetry: belt travel since power-up [m], motor currents [A]."""
+
+    time_s: float
+    left_m: float
+    right_m: float
+    left_current_a: float
+    right_current_a: float
+    moving: bool
+
+
+@dataclass(frozen=True)
+class CabinReading:
+    """Angles of the arm and cabin joints [rad]; both 0 when the cabin lies flat and low."""
+
+    time_s: float
+    arm_rad: float
+    cabin_rad: float
+    moving: bool
+
+
+@dataclass(frozen=True)
+class HeadReading:
+    """Pan (left positive) and tilt (down positive) of the imaging head, as its encoders say [rad]."""
+
+    time_s: float
+    pan_rad: float
+    tilt_rad: float
+    moving: bool
+
+
+@dataclass(frozen=True)
+class TiltReading:
+    """Inclinometers: rotation of the body about its x (roll) and y (pitch) axes [rad]."""
+
+    time_s: float
+    roll_rad: float
+    pitch_rad: float
+
+
+@dataclass(frozen=True)
+class TetherReading:
+    """Paid-out length [m] and tension at the spool [N]."""
+
+    time_s: float
+    length_m: float
+    tension_n: float
+
+
+@dataclass(frozen=True)
+class Window:
+    """A rectangle of pixels to read out: columns from `u`, rows from `v`, `width` x `height`."""
+
+    u: int
+    v: int
+    width: int
+    height: int
+
+
+LEFT, RIGHT = 0, 1
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A sequence of stereo exposures: per frame the LEDs lit (bit i = marker i), then both windows.
+
+    `windows` None reads both full frames. `cadence_s` is the time from one frame to the next.
+    """
+
+    leds: tuple[int, ...]
+    windows: tuple[Window, Window] | None = None
+    cadence_s: float = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Images:
+    """What the cameras return: per camera a uint16 stack, shape (frames, height, width), in counts."""
+
+    time_s: float
+    shot: Shot
+    windows: tuple[Window, Window]
+    counts: tuple[NDArray[np.uint16], NDArray[np.uint16]]
+    head: HeadReading
+
+
+@dataclass(frozen=True, eq=False)
+class Centres:
+    """What the geometric tier returns in place of images: marker centres in full-frame pixels.
+
+    Shapes: `uv_px` (2 cameras, 4 markers, 2), NaN where not detected; `sigma_px` (2, 4).
+    """
+
+    time_s: float
+    shot: Shot
+    uv_px: Array
+    sigma_px: Array
+    head: HeadReading
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call to ground: why, and the evidence attached."""
+
+    time_s: float
+    reason: Reason
+    detail: str
+    evidence: dict[str, float] = field(default_factory=dict)

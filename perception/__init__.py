@@ -1,0 +1,1 @@
+"""The vision chain: difference images, marker centres, stereo pose. Functions on arrays."""

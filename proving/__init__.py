@@ -1,0 +1,1 @@
+"""Scenarios as tests: fault injection and evidence."""

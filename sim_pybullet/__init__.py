@@ -1,0 +1,1 @@
+"""Rover, terrain, head and cameras in PyBullet, behind the ports that hardware would answer."""

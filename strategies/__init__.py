@@ -1,0 +1,1 @@
+"""Recovery strategies, one module and one `Strategy` each, found by entry point."""
