@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from executive.classification import Classification
+from executive.classification import Assessment, Classification
 from executive.clock import Clock
 from executive.pool import Pool
 from executive.ports import Devices, Localizer
 from executive.rig import RigCalibration
-from executive.types import Call, Outcome, PoseEstimate, Segment
+from executive.types import Call, Images, PoseEstimate, Segment
 
 
 class Journal(Protocol):
@@ -20,7 +20,8 @@ class Journal(Protocol):
     def segment(self, segment: Segment | None) -> None: ...
     def waypoint(self, index: int, pose: PoseEstimate) -> None: ...
     def call(self, call: Call) -> None: ...
-    def end(self, outcome: Outcome[object]) -> None: ...
+    def assessment(self, assessment: Assessment) -> None: ...
+    def picture(self, images: Images) -> None: ...
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,22 @@
+"""Drive a distance straight on or back."""
+
+from __future__ import annotations
+
+from executive import guidance
+from executive.guidance import Belts
+from executive.nodes.base import In
+from executive.nodes.driving import DrivingLeaf
+from executive.types import Outcome, Reason
+from executive.values import ANGLE, LENGTH
+
+
+class DriveStraight(DrivingLeaf):
+    """Drive `distance` along the body's x axis, backwards if negative, turning by `turn` on the way."""
+
+    distance = In[float](LENGTH, "how far; negative is backwards")
+    turn = In[float](ANGLE, "rotation superimposed, left positive", default=0.0)
+
+    def belts(self) -> Outcome[Belts]:
+        motion = self.services.classification.motion
+        gauge = self.services.rig.rover.track_gauge_m
+        return Outcome(Reason.DONE, value=guidance.straight(motion, self.distance, self.turn, gauge))

@@ -1,0 +1,68 @@
+"""What every driving leaf shares: a drive of the belts under supervision, its pose predicted on."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+from executive.guidance import Belts
+from executive.nodes.action import ActionLeaf
+from executive.nodes.base import FromTree, In, InOut
+from executive.ports import Action
+from executive.types import Outcome, PoseEstimate, Reason, Segment, TrackReading
+from executive.values import ANGLE, POSE, SEGMENT
+
+DRIVING_OUTCOMES: tuple[Reason, ...] = (
+    Reason.DONE,
+    Reason.BLOCKED,
+    Reason.TILT,
+    Reason.OFF_TRACK,
+    Reason.DEVICE,
+)
+
+
+class DrivingLeaf(ActionLeaf):
+    """Drives the belts; stops on tilt and before the off-track margin; leaves the predicted pose behind."""
+
+    pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]
+    tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
+
+    outcomes: ClassVar[tuple[Reason, ...]] = DRIVING_OUTCOMES
+
+    def belts(self) -> Outcome[Belts]:
+        """The belt travels to drive, or why not."""
+        raise TypeError(f"{type(self).__name__} has no belts")
+
+    def request(self) -> Action[TrackReading] | Outcome[Any]:
+        planned = self.belts()
+        if not planned.ok or planned.value is None:
+            return planned
+        speed = self.services.rig.rover.speed_m_s
+        return self.services.devices.tracks.drive(planned.value.left_m, planned.value.right_m, speed)
+
+    def watch(self) -> Outcome[object] | None:
+        pose = self._carry_on()
+        telemetry = self.services.classification.telemetry
+        tilt = telemetry.tilt if telemetry else None
+        if tilt is not None and math.hypot(tilt.roll_rad, tilt.pitch_rad) > self.tilt_limit:
+            return Outcome(Reason.TILT, f"{math.degrees(math.hypot(tilt.roll_rad, tilt.pitch_rad)):.1f} deg")
+        if pose.track is not None and self.segment is not None:
+            cross = abs(pose.track.cross_m)
+            if cross >= self.segment.off_track_m:
+                return Outcome(Reason.OFF_TRACK, f"predicted cross-track error {cross * 1e3:.0f} mm")
+        return None
+
+    def finish(self, outcome: Outcome[TrackReading]) -> Outcome[Any]:
+        self._carry_on()
+        if not outcome.ok:
+            self.services.journal.assessment(self.services.classification.failed(outcome))
+        return outcome
+
+    def halt(self) -> None:
+        super().halt()
+        self.services.devices.tracks.stop()
+
+    def _carry_on(self) -> PoseEstimate:
+        self.pose = self.services.classification.predicted().on(self.segment)
+        return self.pose

@@ -1,0 +1,49 @@
+"""Measure where the rover is."""
+
+from __future__ import annotations
+
+from executive.nodes.action import ActionLeaf
+from executive.nodes.base import FromTree, In, InOut
+from executive.ports import Action, LocaliseRequest
+from executive.types import Outcome, PoseEstimate, Quality, Reason, Segment
+from executive.values import DURATION, POSE, QUALITY, SEGMENT
+
+
+class Localise(ActionLeaf):
+    """Measure the rover's pose by vision, at rest, and hold it against the prediction."""
+
+    quality = In[Quality](QUALITY, "trend, precise or far", default=Quality.PRECISE)
+    pose = InOut[PoseEstimate](POSE, "the pose, as measured")
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]
+    budget = In[float](DURATION, "mission time it may take", default=900.0)
+
+    outcomes = (
+        Reason.DONE,
+        Reason.NOT_SEEN,
+        Reason.POOR_VIEW,
+        Reason.UNSTABLE_IMAGES,
+        Reason.IMPLAUSIBLE,
+        Reason.OUT_OF_REACH,
+        Reason.TIMEOUT,
+        Reason.DEVICE,
+    )
+
+    def request(self) -> Action[PoseEstimate]:
+        self.services.devices.tracks.stop()
+        predicted = self.services.classification.predicted()
+        return self.services.localizer.locate(LocaliseRequest(self.quality, predicted, self.budget))
+
+    def finish(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
+        classification = self.services.classification
+        if not outcome.ok or outcome.value is None:
+            self.services.journal.assessment(classification.failed(outcome))
+            return outcome
+        fix = outcome.value.on(self.segment)
+        self.services.journal.assessment(classification.fixed(fix))
+        self.services.journal.estimate(fix)
+        self.pose = fix
+        return Outcome(Reason.DONE, _summary(fix), fix)
+
+
+def _summary(fix: PoseEstimate) -> str:
+    return f"{fix.markers} markers, sigma {fix.sigma_position_m * 1e3:.1f} mm"

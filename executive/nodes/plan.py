@@ -1,0 +1,83 @@
+"""Leaves about the plan: a way-point reached, the length of legs, what to make of the soil."""
+
+from __future__ import annotations
+
+import math
+
+from executive import prediction
+from executive.nodes.base import In, InOut, Leaf, Out
+from executive.types import Outcome, Point, PoseEstimate, Reason, Segment
+from executive.values import LENGTH, POINT, POSE, ROUTE, SEGMENT, TEXT
+
+
+class BeginSegment(Leaf):
+    """Make `segment` the one under way: margins and cross-track errors are of it from now on."""
+
+    segment = In[Segment](SEGMENT, "the segment that begins")
+    pose = InOut[PoseEstimate](POSE, "the pose, its offset now from this segment")
+    target = Out[Point](POINT, "the end of the segment")
+
+    def step(self) -> Outcome[object]:
+        self.services.journal.segment(self.segment)
+        self.pose = self.pose.on(self.segment)
+        self.target = self.segment.end
+        return Outcome(Reason.DONE)
+
+
+class StartHere(Leaf):
+    """Accept the first way-point as reached if the rover stands in its tolerance zone."""
+
+    route = In[tuple[Segment, ...]](ROUTE, "the route")
+    pose = In[PoseEstimate](POSE, "the pose")
+
+    outcomes = (Reason.DONE, Reason.OFF_TRACK)
+
+    def step(self) -> Outcome[object]:
+        first = self.route[0]
+        away = math.hypot(self.pose.x_m - first.start.x_m, self.pose.y_m - first.start.y_m)
+        if away > first.off_track_m:
+            return Outcome(Reason.OFF_TRACK, f"stands {away:.2f} m from the first way-point")
+        self.services.journal.waypoint(0, self.pose)
+        return Outcome(Reason.DONE, f"{away * 1e3:.0f} mm from the first way-point")
+
+
+class WaypointReached(Leaf):
+    """Report the end of `segment` as reached."""
+
+    segment = In[Segment](SEGMENT, "the segment that ends here")
+    pose = In[PoseEstimate](POSE, "the pose")
+
+    def step(self) -> Outcome[object]:
+        self.services.journal.waypoint(self.segment.index + 1, self.pose)
+        return Outcome(Reason.DONE)
+
+
+class SetLeg(Leaf):
+    """Set the length of the legs of a trek."""
+
+    leg = Out[float](LENGTH, "the length written")
+    to = In[float](LENGTH, "its new value")
+
+    def step(self) -> Outcome[object]:
+        self.leg = self.to
+        return Outcome(Reason.DONE, f"{self.to * 1e3:.0f} mm")
+
+
+class Compensate(Leaf):
+    """Adopt the turning or advance ratio last seen as this soil's own, with fresh uncertainty."""
+
+    of = In[str](TEXT, "turning or advance")
+
+    outcomes = (Reason.DONE, Reason.GUARD)
+
+    def step(self) -> Outcome[object]:
+        classification = self.services.classification
+        turning = self.of == "turning"
+        ratio = classification.observed_turn_ratio if turning else classification.observed_advance_ratio
+        if ratio is None:
+            return Outcome(Reason.GUARD, f"no {self.of} was observed since the last fix")
+        ratio = max(ratio, 0.2)
+        parameter = prediction.YAW_EFFICIENCY if turning else prediction.ADVANCE
+        classification.adopt(parameter, ratio, sigma=0.3)
+        classification.settle()
+        return Outcome(Reason.DONE, f"{self.of} ratio {ratio:.2f} adopted")

@@ -1,0 +1,52 @@
+"""Look on while the rover drives."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from executive.nodes.base import In, Leaf
+from executive.ports import Action, LocaliseRequest
+from executive.types import Outcome, PoseEstimate, Quality, Reason
+from executive.values import NUMBER
+
+
+class WatchMotion(Leaf):
+    """Supervise a drive by motion fragments: follow with the head, fail when the tendency is wrong.
+
+    Never succeeds by itself: run it in a parallel beside the drive. A frame pair that shows nothing is
+    no evidence; the precise check after the drive decides.
+    """
+
+    gate = In[float](NUMBER, "standard deviations that the tendency may be off", default=4.0)
+
+    outcomes = (Reason.UNEXPECTED,)
+    _action: Action[PoseEstimate] | None = None
+
+    def step(self) -> Outcome[object] | None:
+        if self._action is None:
+            predicted = self.services.classification.predicted()
+            request = LocaliseRequest(Quality.TREND, predicted, budget_s=120.0)
+            self._action = self.services.localizer.locate(request)
+            return None
+        outcome = self._action.poll()
+        if outcome is None:
+            return None
+        self._action = None
+        return None if not outcome.ok or outcome.value is None else self._judge(outcome.value)
+
+    def halt(self) -> None:
+        if self._action is not None:
+            self._action.cancel()
+            self._action = None
+
+    def _judge(self, seen: PoseEstimate) -> Outcome[object] | None:
+        predicted = self.services.classification.predicted()
+        off = np.array([seen.x_m - predicted.x_m, seen.y_m - predicted.y_m])
+        spread = seen.covariance[:2, :2] + predicted.covariance[:2, :2]
+        distance = math.sqrt(float(off @ np.linalg.solve(spread, off)))
+        if distance <= self.gate:
+            self.services.journal.estimate(seen)
+            return None
+        return Outcome(Reason.UNEXPECTED, f"seen {np.hypot(*off) * 1e3:.0f} mm from the prediction")
