@@ -203,15 +203,15 @@ class Leaf(Behaviour):
         raise TypeError(f"{type(self).__name__} has no step")
 
     def halt(self) -> None:
-        """Called once when the leaf ends or is interrupted after having been entered; must leave its device safe."""
+        """Called once when an entered leaf ends or is interrupted; must leave its device safe."""
 
     def initialise(self) -> None:
         self.trace.entered[self.path] = self
-        with _naming(self.path):
+        with _Naming(self.path):
             self.begin()
 
     def update(self) -> Status:
-        with _naming(self.path):
+        with _Naming(self.path):
             outcome = self.step()
         if outcome is None:
             self.feedback_message = ""
@@ -224,11 +224,11 @@ class Leaf(Behaviour):
 
     def terminate(self, new_status: Status) -> None:
         if self.trace.entered.pop(self.path, None) is not None or new_status is not Status.INVALID:
-            with _naming(self.path):
+            with _Naming(self.path):
                 self.halt()
 
 
-class _naming:
+class _Naming:
     """Names the node on any exception that passes, once."""
 
     def __init__(self, path: str) -> None:

@@ -1,0 +1,7 @@
+"""Public helpers for those who write backends, strategies and trees: a fake robot and the checkers."""
+
+from executive.testing.check_backend import check_backend
+from executive.testing.check_strategy import check_strategy
+from executive.testing.fake import BACKEND, FakeBackend, FakeWorld, OverheadLocalizer
+
+__all__ = ["BACKEND", "FakeBackend", "FakeWorld", "OverheadLocalizer", "check_backend", "check_strategy"]
