@@ -6,8 +6,8 @@ from executive import guidance
 from executive.guidance import Belts
 from executive.nodes.base import In
 from executive.nodes.driving import DrivingLeaf
-from executive.types import Outcome, Reason
-from executive.values import ANGLE, LENGTH
+from executive.types import Outcome, Point, Reason
+from executive.values import ANGLE, LENGTH, POINT
 
 
 class DriveStraight(DrivingLeaf):
@@ -20,3 +20,16 @@ class DriveStraight(DrivingLeaf):
         motion = self.services.classification.motion
         gauge = self.services.rig.rover.track_gauge_m
         return Outcome(Reason.DONE, value=guidance.straight(motion, self.distance, self.turn, gauge))
+
+
+class DriveBlind(DrivingLeaf):
+    """Drive all the way to `target` in one go, on belt travel alone."""
+
+    target = In[Point](POINT, "where to drive")
+
+    def belts(self) -> Outcome[Belts]:
+        motion = self.services.classification.motion
+        pose, gauge = motion.pose(), self.services.rig.rover.track_gauge_m
+        distance = guidance.distance_m(pose, self.target)
+        error = guidance.heading_error_rad(pose, self.target)
+        return Outcome(Reason.DONE, value=guidance.straight(motion, distance, error, gauge))

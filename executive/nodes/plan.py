@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from executive import prediction
-from executive.nodes.base import In, InOut, Leaf, Out
+from executive.nodes.base import FromTree, In, InOut, Leaf, Out
 from executive.types import Outcome, Point, PoseEstimate, Reason, Segment
 from executive.values import LENGTH, POINT, POSE, ROUTE, SEGMENT, TEXT
 
@@ -81,3 +81,40 @@ class Compensate(Leaf):
         classification.adopt(parameter, ratio, sigma=0.3)
         classification.settle()
         return Outcome(Reason.DONE, f"{self.of} ratio {ratio:.2f} adopted")
+
+
+class DeadReckon(Leaf):
+    """Take the predicted pose for the pose."""
+
+    pose = Out[PoseEstimate](POSE, "the pose, as predicted from the belts alone")
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]
+
+    def step(self) -> Outcome[object]:
+        self.pose = self.services.classification.predicted().on(self.segment)
+        return Outcome(Reason.DONE)
+
+
+class ChooseSide(Leaf):
+    """Choose a point ahead and aside, on the side where the off-track margin leaves more room."""
+
+    pose = In[PoseEstimate](POSE, "the pose")
+    segment = In[Segment](SEGMENT, "the segment under way")
+    beside = In[float](LENGTH, "how far to the side of the present place")
+    ahead = In[float](LENGTH, "how far ahead along the segment")
+    point = Out[Point](POINT, "the point chosen")
+
+    outcomes = (Reason.DONE, Reason.OFF_TRACK)
+
+    def step(self) -> Outcome[object]:
+        segment = self.segment
+        offset = segment.offset(self.pose.x_m, self.pose.y_m)
+        side = -1.0 if offset.cross_m > 0 else 1.0
+        cross = offset.cross_m + side * self.beside
+        if abs(cross) + 2 * self.pose.sigma_position_m >= segment.off_track_m:
+            return Outcome(Reason.OFF_TRACK, "no room beside")
+        along = offset.along_m + self.ahead
+        c, s = math.cos(segment.bearing_rad), math.sin(segment.bearing_rad)
+        self.point = Point(
+            segment.start.x_m + c * along - s * cross, segment.start.y_m + s * along + c * cross
+        )
+        return Outcome(Reason.DONE, "to the left" if side > 0 else "to the right")

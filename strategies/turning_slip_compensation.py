@@ -1,0 +1,17 @@
+"""The soil turns the rover less, or more, than the motion model believed: believe the soil."""
+
+from pathlib import Path
+
+from executive.hypotheses import Hypothesis
+from executive.pool import Strategy
+from executive.types import Reason
+
+STRATEGY = Strategy(
+    name="turning_slip_compensation",
+    doc="Adopt the turning ratio last seen as this soil's own; the next turn is commanded with it.",
+    tree=Path(__file__).with_suffix(".yaml"),
+    answers={Hypothesis.SLIP_TURNING: 1.0, Hypothesis.TRACK_ASYMMETRY: 0.6},
+    reasons={Reason.OFF_HEADING: 0.3},
+    cost_s=60.0,
+    tries_per_segment=4,
+)
