@@ -1,0 +1,147 @@
+"""The one loop: sense, tick, write what changed, let time pass; and rest in the end, whatever happens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from executive.clock import Stopwatch
+from executive.errors import NodeRaised
+from executive.journal import RunJournal
+from executive.nodes.base import Leaf, Trace
+from executive.nodes.services import Services
+from executive.ports import Backend
+from executive.telemetry import events
+from executive.telemetry.recorder import Recorder
+from executive.types import Outcome, Reason
+
+TELEMETRY_PERIOD_S = 10.0
+
+
+@dataclass(frozen=True)
+class RunEnd:
+    """How a run ended: one of `result.json`'s outcomes, why, and the defect if it was one."""
+
+    outcome: str
+    reason: str | None
+    defect: BaseException | None = None
+
+
+@dataclass
+class Run:
+    """Everything that one run needs, made by the app."""
+
+    root: Behaviour
+    trace: Trace
+    paths: dict[str, Behaviour]
+    services: Services
+    backend: Backend
+    journal: RunJournal
+    recorder: Recorder
+    stopwatch: Stopwatch
+    time_limit_s: float
+    progress: Callable[[RunJournal, float], None] = lambda journal, now_s: None
+    each_tick: Callable[[], None] = lambda: None
+
+
+def execute(run: Run) -> RunEnd:
+    """Run the tree to its end. Always: leaves terminated, rover at rest, stop written, record closed."""
+    end = RunEnd("error", "the run was interrupted")
+    try:
+        end = _loop(run)
+    except Exception as defect:
+        end = RunEnd("error", _one_line(defect), defect)
+    finally:
+        end = _rest(run, end)
+    return end
+
+
+def _loop(run: Run) -> RunEnd:
+    watch, changes = run.stopwatch, _Changes(run)
+    limit_ticks = run.services.clock.ticks_for(run.time_limit_s)
+    sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
+    while True:
+        now = run.services.classification.sense(run.backend.devices)
+        run.each_tick()
+        with watch.measure("tick"):
+            run.root.tick_once()
+        with watch.measure("record"):
+            changes.write()
+            if run.services.clock.ticks % sample_ticks == 0:
+                run.journal.telemetry(now, run.backend.devices)
+            run.recorder.flush()
+        if run.root.status is not Status.RUNNING:
+            return _ended(run)
+        if run.services.clock.ticks >= limit_ticks:
+            return RunEnd("time_limit", f"still under way after {run.time_limit_s:.0f} s")
+        with watch.measure("advance"):
+            run.backend.advance()
+        run.progress(run.journal, run.services.clock.now_s)
+
+
+def _ended(run: Run) -> RunEnd:
+    if run.root.status is Status.SUCCESS:
+        return RunEnd("reached", None)
+    failure = run.trace.last_failure
+    reason = f"{failure[1].reason}: {failure[1].detail}" if failure else None
+    call = run.journal.called
+    if call is not None:
+        return RunEnd("help", f"{call.reason}: {call.detail}")
+    return RunEnd("safe_hold", reason)
+
+
+def _rest(run: Run, end: RunEnd) -> RunEnd:
+    """Terminate every entered leaf, stop the rover, close the record; each whatever becomes of the others."""
+    steps: tuple[Callable[[], object], ...] = (
+        run.trace.terminate_entered,
+        run.backend.safe_stop,
+        lambda: run.journal.write(events.Stop(end.outcome, end.reason)),
+        run.recorder.close,
+        run.backend.close,
+    )
+    for step in steps:
+        try:
+            step()
+        except Exception as defect:
+            end = RunEnd("error", _one_line(defect), end.defect or defect)
+    return end
+
+
+def _one_line(defect: BaseException) -> str:
+    text = str(defect) if isinstance(defect, NodeRaised) else f"{type(defect).__name__}: {defect}"
+    return " ".join(text.split())
+
+
+class _Changes:
+    """Writes the nodes whose status changed since the last tick."""
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+        self._last: dict[str, Status] = dict.fromkeys(run.paths, Status.INVALID)
+        self._outcomes: dict[str, Outcome[object]] = {}
+        run.trace.note = self._note
+
+    def write(self) -> None:
+        for path, status in self._changed():
+            self._run.journal.write(self._event(path, status))
+        self._outcomes.clear()
+
+    def _note(self, path: str, outcome: Outcome[object]) -> None:
+        self._outcomes[path] = outcome
+
+    def _changed(self) -> Iterator[tuple[str, Status]]:
+        for path, node in self._run.paths.items():
+            ended_again = path in self._outcomes
+            if node.status is not self._last[path] or ended_again:
+                self._last[path] = node.status
+                yield path, node.status
+
+    def _event(self, path: str, status: Status) -> events.NodeChange:
+        outcome = self._outcomes.get(path)
+        if outcome is None or not isinstance(self._run.paths[path], Leaf):
+            return events.NodeChange(path, status.value.lower())
+        reason = "" if outcome.reason is Reason.DONE else str(outcome.reason)
+        return events.NodeChange(path, status.value.lower(), reason, outcome.detail)
