@@ -23,6 +23,7 @@ class RunJournal:
         self._recorder, self._clock, self._route = recorder, clock, route
         self._attempts: Counter[str] = Counter()
         self._segment: Segment | None = None
+        self._pose: PoseEstimate | None = None
         self.called: Call | None = None
         self.reached = 0
 
@@ -31,6 +32,7 @@ class RunJournal:
         self._recorder.write(event, self._clock.now_s)
 
     def estimate(self, pose: PoseEstimate) -> None:
+        self._pose = pose
         self.write(pose)
 
     def segment(self, segment: Segment | None) -> None:
@@ -83,6 +85,19 @@ class RunJournal:
                 moving=now.tracks.moving,
             )
         )
+
+    def along_route_m(self) -> float:
+        """How much of the route lies behind the rover, by the last fix [m]."""
+        if self._segment is None or self._pose is None:
+            return 0.0
+        behind = sum(s.length_m for s in self._route[: self._segment.index])
+        along = self._segment.offset(self._pose.x_m, self._pose.y_m).along_m
+        return behind + min(max(along, 0.0), self._segment.length_m)
+
+    def to_go_text(self) -> str:
+        """What remains, for people."""
+        remaining = sum(s.length_m for s in self._route) - self.along_route_m()
+        return f"{remaining:.2f} m to go"
 
     def _chosen(self, choice: Choice) -> None:
         if choice.strategy is None:

@@ -1,0 +1,219 @@
+"""What the commands do: put a run together, run it, and leave a complete run folder behind."""
+
+from __future__ import annotations
+
+import json
+import math
+import traceback
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from executive import plugins
+from executive.backends import BackendRequest
+from executive.classification import Classification
+from executive.clock import Stopwatch
+from executive.errors import PluginError
+from executive.expectations import judge
+from executive.journal import RunJournal
+from executive.nodes.services import Services
+from executive.pool import Pool, Strategy
+from executive.ports import Backend, Localizer
+from executive.prediction import quat_from_heading_tilt
+from executive.progress import progress_bar
+from executive.report import write_report
+from executive.runner import Run, RunEnd, execute
+from executive.scenario import ResolvedScenario, resolve_scenario
+from executive.telemetry import events
+from executive.telemetry.recorder import Recorder
+from executive.telemetry.result import RunFigures, summarise, write_result
+from executive.tree.build import build
+from executive.types import PoseEstimate, Segment, Source
+
+TICK_S = 1.0
+REACHED, OTHERWISE, DEFECT = 0, 1, 3
+PACKAGES = ("longarm", "py_trees", "numpy", "scipy", "opencv-python-headless", "pybullet")
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What the command line may say about a run."""
+
+    seed: int | None = None
+    out: Path | None = None
+    tier: str | None = None
+    overrides: Sequence[str] = ()
+    bar: bool = True
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A run that ended: its folder, its result, and the exit code that stands for it."""
+
+    folder: Path
+    result: dict[str, Any]
+    exit_code: int
+
+
+def run(file: Path, options: RunOptions) -> Finished:
+    """Run a scenario or mission file. ConfigError and PluginError come before anything is written."""
+    scenario = resolve_scenario(file, options.seed, options.tier, options.overrides)
+    strategies = load_strategies()
+    localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
+    watch = Stopwatch()
+    folder = options.out or _free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
+    folder.mkdir(parents=True, exist_ok=True)
+    for stale in ("record.mcap", "truth.mcap", "result.json", "report.html", "traceback.txt"):
+        (folder / stale).unlink(missing_ok=True)
+    (folder / "scenario.yaml").write_text(scenario.dump())
+    end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
+    if end.defect is not None:
+        (folder / "traceback.txt").write_text("".join(traceback.format_exception(end.defect)))
+    return _conclude(scenario, folder, end, watch)
+
+
+def report(folder: Path) -> Path:
+    """(Re)write the report of a run folder from its record."""
+    return write_report(folder)
+
+
+def load_strategies() -> tuple[Strategy, ...]:
+    """Every strategy registered, by name; PluginError for one that is not a `Strategy`."""
+    loaded = []
+    for name in plugins.found(plugins.STRATEGIES):
+        strategy = plugins.load(plugins.STRATEGIES, name, Strategy)
+        if isinstance(strategy, Strategy):
+            loaded.append(strategy)
+    return tuple(loaded)
+
+
+def prior_pose(first: Segment) -> PoseEstimate:
+    """What ground knows before the first fix: the rover stands near the first way-point, heading outward."""
+    heading = math.atan2(first.start.y_m, first.start.x_m)
+    return PoseEstimate(
+        time_s=0.0,
+        position_site_m=(first.start.x_m, first.start.y_m, 0.0),
+        quat_site_body=quat_from_heading_tilt(heading, 0.0, 0.0),
+        covariance=np.diag([0.05**2, 0.05**2, 0.20**2, 0.1**2, 0.1**2, 0.6**2]),
+        source=Source.PRIOR,
+    )
+
+
+def _execute(
+    scenario: ResolvedScenario,
+    strategies: tuple[Strategy, ...],
+    localizer: object,
+    folder: Path,
+    watch: Stopwatch,
+    bar: bool,
+) -> RunEnd:
+    route = scenario.mission.route()
+    request = BackendRequest(
+        world=scenario.world,
+        route=route,
+        seed=scenario.seed,
+        tier=scenario.tier,
+        rig=scenario.rig,
+        truth_path=folder / "truth.mcap",
+        tick_s=TICK_S,
+    )
+    with watch.measure("setup"):
+        backend = scenario.backend.create(request)
+    try:
+        recorder = Recorder(folder / "record.mcap")
+        prepared = _prepare(scenario, strategies, localizer, backend, recorder, watch)
+        length_m = sum(s.length_m for s in route)
+        with progress_bar(scenario.name, length_m, bar) as progress:
+            prepared.progress = progress
+            end = execute(prepared)
+    finally:
+        backend.safe_stop()
+        backend.close()
+    for part, spent in backend.wall_s().items():
+        watch.spent_s[part] += spent
+    return end
+
+
+def _prepare(
+    scenario: ResolvedScenario,
+    strategies: tuple[Strategy, ...],
+    make_localizer: object,
+    backend: Backend,
+    recorder: Recorder,
+    watch: Stopwatch,
+) -> Run:
+    route = scenario.mission.route()
+    journal = RunJournal(recorder, backend.clock, route)
+    services = Services(
+        clock=backend.clock,
+        devices=backend.devices,
+        rig=backend.rig,
+        localizer=_localizer(make_localizer, backend),
+        classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
+        pool=Pool(strategies, journal.strategy),
+        journal=journal,
+    )
+    built = build(scenario.tree, services, {"route": route, **scenario.mission.tree_inputs})
+    journal.write(
+        events.Start(
+            scenario.name,
+            scenario.dump(),
+            scenario.seed,
+            TICK_S,
+            scenario.tier,
+            {package: version(package) for package in PACKAGES},
+        )
+    )
+    journal.write(events.RouteEvent(route))
+    return Run(
+        root=built.root,
+        trace=built.trace,
+        paths=built.paths,
+        services=services,
+        backend=backend,
+        journal=journal,
+        recorder=recorder,
+        stopwatch=watch,
+        time_limit_s=scenario.time_limit_s,
+    )
+
+
+def _localizer(make: object, backend: Backend) -> Localizer:
+    if not callable(make):
+        raise PluginError(f"got a localizer {make!r}, expected something to call")
+    made: Localizer = make(devices=backend.devices, rig=backend.rig, clock=backend.clock)
+    return made
+
+
+def _conclude(scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch) -> Finished:
+    record, truth = folder / "record.mcap", folder / "truth.mcap"
+    figures = RunFigures(
+        wall_s=round(watch.elapsed_s(), 3),
+        wall={part: round(spent, 3) for part, spent in sorted(watch.spent_s.items())},
+        waypoints_total=len(scenario.mission.waypoints),
+    )
+    result = summarise(record, truth, figures)
+    result["expectations"] = judge(scenario.expect, result)
+    write_result(folder / "result.json", result)
+    write_report(folder)
+    return Finished(folder, json.loads((folder / "result.json").read_text()), _exit_code(end, result))
+
+
+def _exit_code(end: RunEnd, result: dict[str, Any]) -> int:
+    if end.outcome == "error":
+        return DEFECT
+    if result["expectations"]:
+        return REACHED if all(row["met"] for row in result["expectations"]) else OTHERWISE
+    return REACHED if end.outcome == "reached" else OTHERWISE
+
+
+def _free_folder(parent: Path, name: str) -> Path:
+    """`parent/name`, or with the first free number behind it."""
+    folder, number = parent / name, 2
+    while folder.exists():
+        folder, number = parent / f"{name}-{number}", number + 1
+    return folder
