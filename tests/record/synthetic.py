@@ -6,6 +6,7 @@ Nothing here simulates a rover: it is a plausible story told straight into the r
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import json
 import math
 from pathlib import Path
@@ -55,9 +56,7 @@ mission:
 
 def segments() -> tuple[Segment, ...]:
     points = [Point(x, y) for x, y in WAYPOINTS]
-    return tuple(
-        Segment(a, b, 0.03, 0.12, 0.03, i) for i, (a, b) in enumerate(zip(points, points[1:], strict=False))
-    )
+    return tuple(Segment(a, b, 0.03, 0.12, 0.03, i) for i, (a, b) in enumerate(itertools.pairwise(points)))
 
 
 @dataclasses.dataclass
@@ -67,6 +66,7 @@ class _Rover:
     heading: float
     time: float = 0.0
     travel: float = 0.0
+    turned: float = 0.0
 
 
 class Story:
@@ -95,12 +95,13 @@ class Story:
         r.heading += turn
         r.x += drive * math.cos(r.heading)
         r.y += drive * math.sin(r.heading)
-        r.travel += drive * 1.12 + abs(turn) * 0.12
+        r.travel += drive * 1.12
+        r.turned += turn * 0.12
         r.time += TICK_S
         load = 0.11 + (0.05 if drive else 0.0) + (0.12 if turn else 0.0)
         left, right = load + 0.01 * self.rng.standard_normal(2)
         quat = self.quat()
-        yaw, pitch, roll = Rotation.from_quat(quat).as_euler("ZYX")
+        _, pitch, roll = Rotation.from_quat(quat).as_euler("ZYX")
         z = height(r.x, r.y)
         slip = 0.1 + 0.02 * self.rng.standard_normal() if drive else 0.0
         truth = TruthEvent(
@@ -109,8 +110,8 @@ class Story:
         self.truth(truth, r.time)
         self.record.write(
             Telemetry(
-                r.travel,
-                r.travel,
+                r.travel - r.turned,
+                r.travel + r.turned,
                 left,
                 right,
                 roll + 0.002 * self.rng.standard_normal(),
@@ -120,7 +121,7 @@ class Story:
                 math.atan2(r.y, r.x),
                 0.4,
                 math.hypot(r.x, r.y) + 0.1,
-                0.05 + 0.01 * self.rng.random(),
+                0.05 + 0.03 * self.rng.random(),
                 drive > 0 or turn != 0,
             ),
             r.time,

@@ -1,0 +1,30 @@
+"""A figure of the report: a drawing and the caption that explains it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Figure:
+    """`body` is HTML; `caption` a paragraph of plain text."""
+
+    key: str
+    title: str
+    body: str
+    caption: str
+
+
+def duration(seconds: float) -> str:
+    """Mission time for people: 45 s, 12 min 05 s, 3 h 07 min."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+
+
+def millimetres(metres: float | None, digits: int = 1) -> str:
+    """A length in mm, a dash where there is none."""
+    return "–" if metres is None else f"{metres * 1000:.{digits}f} mm"

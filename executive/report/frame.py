@@ -1,0 +1,83 @@
+"""The map's geometry: site metres to pixels, x to the right and y up, the same scale in both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from executive.types import Array, Segment, Vec2
+
+
+@dataclass(frozen=True)
+class MapFrame:
+    """A rectangle of the site, drawn at `px_per_m` with its upper left corner at `left_px`, `top_px`."""
+
+    x0_m: float
+    y0_m: float
+    x1_m: float
+    y1_m: float
+    px_per_m: float
+    left_px: float = 0.0
+    top_px: float = 0.0
+
+    @classmethod
+    def around(cls, xy_m: Array, width_px: float, pad_m: float, heights_px: Vec2) -> MapFrame:
+        """The frame that holds all points (n, 2) with a border, of this width, its height within limits."""
+        low, high = xy_m.min(axis=0) - pad_m, xy_m.max(axis=0) + pad_m
+        scale = min(width_px / (high[0] - low[0]), heights_px[1] / (high[1] - low[1]))
+        middle = (low + high) / 2
+        half_x = width_px / scale / 2
+        half_y = max(high[1] - low[1], heights_px[0] / scale) / 2
+        return cls(middle[0] - half_x, middle[1] - half_y, middle[0] + half_x, middle[1] + half_y, scale)
+
+    @property
+    def width_px(self) -> float:
+        return (self.x1_m - self.x0_m) * self.px_per_m
+
+    @property
+    def height_px(self) -> float:
+        return (self.y1_m - self.y0_m) * self.px_per_m
+
+    def x(self, x_m: float) -> float:
+        return self.left_px + (x_m - self.x0_m) * self.px_per_m
+
+    def y(self, y_m: float) -> float:
+        return self.top_px + (self.y1_m - y_m) * self.px_per_m
+
+    def to_px(self, xy_m: Iterable[Sequence[float]]) -> list[Vec2]:
+        """Points of the site as points of the drawing."""
+        return [(self.x(p[0]), self.y(p[1])) for p in xy_m]
+
+    def holds(self, x_m: float, y_m: float) -> bool:
+        return self.x0_m <= x_m <= self.x1_m and self.y0_m <= y_m <= self.y1_m
+
+
+def corridor(segment: Segment, half_width_m: float) -> list[Vec2]:
+    """The corners of the band around a segment, its ends cut square."""
+    a, b = segment.start, segment.end
+    length = segment.length_m or 1.0
+    nx, ny = -(b.y_m - a.y_m) / length * half_width_m, (b.x_m - a.x_m) / length * half_width_m
+    return [
+        (a.x_m + nx, a.y_m + ny),
+        (b.x_m + nx, b.y_m + ny),
+        (b.x_m - nx, b.y_m - ny),
+        (a.x_m - nx, a.y_m - ny),
+    ]
+
+
+def ellipse(x_m: float, y_m: float, covariance: Array, sigmas: float) -> Array:
+    """Outline (37, 2) of the error ellipse of a 2x2 covariance [m²], `sigmas` standard deviations large."""
+    values, vectors = np.linalg.eigh(covariance)
+    angle = np.linspace(0, 2 * np.pi, 37)
+    circle = np.array([np.cos(angle), np.sin(angle)])
+    return np.asarray(((vectors * np.sqrt(np.maximum(values, 0)) * sigmas) @ circle).T + [x_m, y_m])
+
+
+def outline(x_m: float, y_m: float, heading_rad: float, length_m: float, width_m: float) -> list[Vec2]:
+    """The corners of a rectangle that stands at a pose, its front edge first."""
+    c, s = np.cos(heading_rad), np.sin(heading_rad)
+    corners = [(length_m / 2, width_m / 2), (length_m / 2, -width_m / 2)]
+    corners += [(-length_m / 2, -width_m / 2), (-length_m / 2, width_m / 2)]
+    return [(float(x_m + c * u - s * v), float(y_m + s * u + c * v)) for u, v in corners]

@@ -1,0 +1,114 @@
+"""Small multiples of the telemetry."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from executive.report import palette, svg
+from executive.report.axes import Chart, Scale, legend, time_axis, timed
+from executive.report.figure import Figure
+from executive.report.gather import Run
+from executive.telemetry.events import Telemetry
+from executive.types import Array
+
+_WIDTH, _LEFT, _TOP, _BOTTOM = 540.0, 44.0, 30.0, 140.0
+_LEAST_TRAVEL_M = 0.02
+
+
+class Series(NamedTuple):
+    """One line of a panel; `dots` draws its points as well."""
+
+    name: str
+    colour: str
+    time_s: Array
+    values: Array
+    dots: bool = False
+
+
+def telemetry(run: Run) -> Figure | None:
+    """Six panels over the same mission time; None where no telemetry was recorded."""
+    samples = run.history.all(Telemetry)
+    if not samples:
+        return None
+    t = np.array([at.time_s for at in samples])
+
+    def channel(name: str, factor: float = 1.0) -> Array:
+        return np.array([getattr(at.event, name) for at in samples]) * factor
+
+    degrees, left, right = 180 / math.pi, palette.ESTIMATE, palette.FIX
+    panels = [
+        (
+            "motor current [A]",
+            [
+                Series("left", left, t, channel("left_current_a")),
+                Series("right", right, t, channel("right_current_a")),
+            ],
+        ),
+        (
+            "tilt of the body [deg]",
+            [
+                Series("roll", left, t, channel("roll_rad", degrees)),
+                Series("pitch", right, t, channel("pitch_rad", degrees)),
+            ],
+        ),
+        (
+            "belt travel [m]",
+            [Series("left", left, t, channel("left_m")), Series("right", right, t, channel("right_m"))],
+        ),
+        ("slip between localisations [-]", _slip(run, t, (channel("left_m") + channel("right_m")) / 2)),
+        (
+            "head [deg]",
+            [
+                Series("pan", left, t, channel("pan_rad", degrees)),
+                Series("tilt", right, t, channel("tilt_rad", degrees)),
+            ],
+        ),
+        ("tether tension [N]", [Series("tension", left, t, channel("tether_n"))]),
+    ]
+    cards = "".join(_panel(run, title, series) for title, series in panels if series)
+    caption = (
+        "What the rover, the head and the tether reported, one sample a tick. The slip estimate compares, "
+        "from one localisation to the next, the distance covered with what the belts travelled; it is 0 where the "
+        "tracks grip and 1 where they spin in place. Stretches with less than 20 mm of travel are left out."
+    )
+    return Figure("telemetry", "Telemetry", f"<div class='panels'>{cards}</div>", caption)
+
+
+def _panel(run: Run, title: str, series: Sequence[Series]) -> str:
+    finite = np.concatenate([s.values[np.isfinite(s.values)] for s in series])
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    if 0 < low < 0.9 * high:
+        low = 0.0  # a force or a current is read against nothing
+    margin = 0.08 * (high - low) or 0.5 * abs(high) or 0.5
+    time = Scale(0.0, run.end_s, _LEFT, _WIDTH - 6)
+    chart = Chart(time, Scale(low - margin, high + margin, _BOTTOM, _TOP))
+    lines = [chart.line(s.time_s, s.values, stroke=s.colour, stroke_width=1.2) for s in series]
+    dots = [
+        svg.element("circle", cx=chart.time(t), cy=chart.value.clamp(v), r=2.4, fill=s.colour)
+        for s in series
+        if s.dots
+        for t, v in zip(s.time_s, s.values, strict=True)
+    ]
+    body = [time_axis(time, _TOP, _BOTTOM), chart.frame(title), *lines, *dots]
+    drawn = svg.drawing(_WIDTH, _BOTTOM + 22, body, aria_label=title, **timed(time, _TOP, _BOTTOM))
+    names = legend(("line", s.colour, s.name) for s in series) if len(series) > 1 else ""
+    return f"<div class='panel'>{names}{drawn}</div>"
+
+
+def _slip(run: Run, time_s: Array, travel_m: Array) -> list[Series]:
+    """1 - distance / belt travel between successive fixes, at the time of the later one."""
+    rows = []
+    for before, after in pairwise(run.fixes):
+        belts = float(np.interp(after.time_s, time_s, travel_m) - np.interp(before.time_s, time_s, travel_m))
+        if abs(belts) >= _LEAST_TRAVEL_M:
+            moved = math.hypot(after.x_m - before.x_m, after.y_m - before.y_m)
+            rows.append((after.time_s, 1 - moved / abs(belts)))
+    if not rows:
+        return []
+    times, slip = np.array(rows).T
+    return [Series("slip", palette.ESTIMATE, times, slip, dots=True)]

@@ -1,0 +1,144 @@
+"""The report's tables, as rows of plain text."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from executive.report.figure import duration, millimetres
+from executive.report.gather import Run
+from executive.report.overview import letter
+from executive.telemetry.events import WaypointEvent
+from executive.telemetry.result import waypoint_error_m
+from executive.types import Call
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: header and rows of text; `folded` starts closed."""
+
+    key: str
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    note: str = ""
+    folded: bool = False
+
+
+def tables(run: Run) -> list[Table]:
+    """Every table that has rows."""
+    made = [waypoints(run), strategies(run), faults(run), expectations(run), calls(run), localisations(run)]
+    return [table for table in made if table.rows]
+
+
+def waypoints(run: Run) -> Table:
+    rows = []
+    for at in run.history.all(WaypointEvent):
+        event = at.event
+        believed = math.hypot(event.pose.x_m - event.target.x_m, event.pose.y_m - event.target.y_m)
+        tolerance = next((s.tolerance_m for s in run.segments if s.end == event.target), None)
+        true = None if run.track is None else waypoint_error_m(run.track, at)
+        inside = "–" if true is None or tolerance is None else "yes" if true <= tolerance else "NO"
+        rows.append(
+            (
+                str(event.index),
+                f"{event.target.x_m:.3f}, {event.target.y_m:.3f}",
+                duration(at.time_s),
+                millimetres(believed),
+                millimetres(true),
+                millimetres(tolerance, 0),
+                inside,
+            )
+        )
+    header = ("way-point", "x, y [m]", "reached at", "believed error", "true error", "tolerance", "inside")
+    return Table("waypoints", "Way-points", header, tuple(rows))
+
+
+def strategies(run: Run) -> Table:
+    rows = tuple(
+        (
+            letter(n),
+            row["name"],
+            duration(row["t_s"]),
+            row["hypothesis"],
+            f"{row['weight']:.2f}",
+            {True: "yes", False: "no", None: "–"}[row.get("helped")],
+            row.get("why", ""),
+        )
+        for n, row in enumerate(run.result.get("strategies", []))
+    )
+    header = ("", "strategy", "chosen at", "against", "weight", "helped", "why")
+    return Table("strategies", "Strategies", header, rows)
+
+
+def faults(run: Run) -> Table:
+    rows = tuple(
+        (
+            row["name"],
+            "yes" if row["fired"] else "NO",
+            *(_time(row.get(k)) for k in ("t_on_s", "t_detected_s", "t_recovered_s")),
+            row.get("hypothesis") or "–",
+        )
+        for row in run.result.get("faults", [])
+    )
+    return Table(
+        "faults", "Injected faults", ("fault", "fired", "on", "detected", "recovered", "diagnosis"), rows
+    )
+
+
+def expectations(run: Run) -> Table:
+    rows = tuple(
+        (row["text"], "met" if row["met"] else "NOT MET", _plain(row.get("robustness")))
+        for row in run.result.get("expectations", [])
+    )
+    note = "Robustness is the distance to the limit, in its unit; negative where it is not met."
+    return Table(
+        "expectations", "Expectations", ("expectation", "", "robustness"), rows, note if rows else ""
+    )
+
+
+def calls(run: Run) -> Table:
+    rows = tuple(
+        (
+            duration(time_s),
+            call.reason.value,
+            call.detail,
+            ", ".join(f"{k} {v:.3g}" for k, v in call.evidence.items()),
+        )
+        for time_s, call in run.history.all(Call)
+    )
+    return Table("calls", "Calls to ground", ("at", "reason", "detail", "evidence"), rows)
+
+
+def localisations(run: Run) -> Table:
+    rows = []
+    for n, pose in enumerate(run.fixes, start=1):
+        error = run.errors[n - 1] if run.errors else None
+        rows.append(
+            (
+                str(n),
+                duration(pose.time_s),
+                f"{pose.x_m:.4f}",
+                f"{pose.y_m:.4f}",
+                f"{pose.position_site_m[2]:.4f}",
+                f"{math.degrees(pose.heading_rad):.2f}",
+                str(pose.markers),
+                millimetres(pose.sigma_position_m, 2),
+                f"{math.degrees(pose.sigma_heading_rad):.3f}",
+                "–" if error is None else millimetres(math.hypot(*error.position_m), 2),
+                "–" if error is None else f"{math.degrees(error.rotation_rad[2]):+.3f}",
+                "–" if error is None else f"{error.nees:.1f}",
+            )
+        )
+    header: tuple[str, ...] = ("", "at", "x [m]", "y [m]", "z [m]", "heading [deg]", "markers")
+    header += ("σ position", "σ heading [deg]", "true error", "yaw error [deg]", "NEES")
+    note = "NEES is the squared error in units of its covariance, 6 components: 6 on average if consistent."
+    return Table("localisations", "Every localisation", header, tuple(rows), note, folded=True)
+
+
+def _time(seconds: float | None) -> str:
+    return "–" if seconds is None else duration(seconds)
+
+
+def _plain(value: float | None) -> str:
+    return "–" if value is None else f"{value:.4g}"
