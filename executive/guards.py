@@ -52,7 +52,7 @@ def parse_guard(text: str) -> Guard:
 
 _TOKEN = re.compile(
     r"(?P<space>\s+)"
-    rf"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)"
+    r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)"
     r"|(?P<reference>\{\s*[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\s*\})"
     r"|(?P<text>'[^']*'|\"[^\"]*\")"
     r"|(?P<word>[A-Za-z_µ°%]\w*(?:/[A-Za-z]+)?)"

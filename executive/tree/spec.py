@@ -41,7 +41,7 @@ GUARDS = ("skip_if", "while", "success_if", "failure_if")
 
 @dataclass(frozen=True)
 class NodeSpec:
-    """One node of a tree file. `tree` is set where the node is another tree, `item` where it is a for_each."""
+    """One node of a tree file. `tree` is set where it is another tree, `item` where it is a for_each."""
 
     type: str
     category: str
