@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from executive.classification import Assessment, Classification
 from executive.clock import Clock
-from executive.pool import Pool
 from executive.ports import Devices, Localizer
 from executive.rig import RigCalibration
 from executive.types import Call, Images, PoseEstimate, Segment
+
+if TYPE_CHECKING:  # only named here, so that a tree can be read, checked and drawn without them
+    from executive.classification import Assessment, Classification
+    from executive.pool import Pool
 
 
 class Journal(Protocol):

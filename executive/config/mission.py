@@ -1,0 +1,72 @@
+"""What makes a mission impossible although its file is well formed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+from executive.config.find import shown
+from executive.config.models import MissionFile, Waypoint
+from executive.config.source import Place, Source, read
+from executive.config.validate import parse
+from executive.errors import ConfigError, Problem
+
+NEAREST_M, FURTHEST_M = 1.2, 20.0
+"""The rover works within 20 m of the lander; nearer than 1.2 m the head cannot see it with both cameras."""
+
+
+def load_mission(path: Path) -> MissionFile:
+    """A mission file, checked."""
+    source = read(path, shown(path))
+    mission = parse(source, MissionFile)
+    if problems := list(mission_problems(source, (), mission)):
+        raise ConfigError(problems)
+    return mission
+
+
+def mission_problems(source: Source, at: Place, mission: MissionFile) -> Iterator[Problem]:
+    """Way-points out of reach, segments without length, margins that contradict each other."""
+    points = (*at, "waypoints")
+    for index, waypoint in enumerate(mission.waypoints):
+        yield from _reach_problem(source, (*points, index), waypoint)
+    for index, (start, end) in enumerate(pairwise(mission.waypoints), 1):
+        if math.hypot(end.x - start.x, end.y - start.y) < 1e-6:
+            message = f"got the same place as way-point {index - 1}, expected a segment with a length"
+            yield source.at((*points, index)).problem(message)
+    yield from _margin_problems(source, at, mission)
+
+
+def _reach_problem(source: Source, place: Place, waypoint: Waypoint) -> Iterator[Problem]:
+    distance_m = math.hypot(waypoint.x, waypoint.y)
+    if not NEAREST_M <= distance_m <= FURTHEST_M:
+        yield source.at(place).problem(
+            f"got an unreachable way-point, {distance_m:.2f} m from the lander, "
+            f"expected {NEAREST_M:g} m to {FURTHEST_M:g} m"
+        )
+
+
+def _margin_problems(source: Source, at: Place, mission: MissionFile) -> Iterator[Problem]:
+    told = set()
+    for index in range(1, len(mission.waypoints)):
+        margins = mission.margins(index)
+        for low, high, strict in (("on_track", "off_track", True), ("tolerance", "off_track", False)):
+            small, large = getattr(margins, low), getattr(margins, high)
+            if small < large or (small == large and not strict):
+                continue
+            place = _margin_place(source, at, index, (low, high))
+            relation = "less than" if strict else "at most"
+            message = f"got {low} {small:g} m with {high} {large:g} m, expected {low} to be {relation} {high}"
+            if (place, message) not in told:
+                told.add((place, message))
+                yield source.at(place).problem(message)
+
+
+def _margin_place(source: Source, at: Place, index: int, names: tuple[str, str]) -> Place:
+    """Where one of these margins is said: at the way-point, or among the defaults."""
+    for scope in ((*at, "waypoints", index), (*at, "segments")):
+        for name in names:
+            if (*scope, name) in source.values:
+                return (*scope, name)
+    return (*at, "waypoints", index)

@@ -1,0 +1,116 @@
+"""The shapes of mission and scenario files. Floats are SI inside; files carry units."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from executive.config.validate import Strict
+from executive.types import Point, Segment
+from executive.units import Angle, Duration, Length
+
+Name = Annotated[str, Field(min_length=1, max_length=100)]
+Margin = Annotated[Length, Field(gt=0)]
+
+
+class Margins(Strict):
+    """Margins of every segment that does not say otherwise (paper, section 3.1)."""
+
+    on_track: Margin = 0.030
+    off_track: Margin = 0.250
+    tolerance: Margin = 0.030
+
+
+class Waypoint(Strict):
+    """A point of the path in `site`; its margins are those of the segment that ends here."""
+
+    x: Length
+    y: Length
+    on_track: Margin | None = None
+    off_track: Margin | None = None
+    tolerance: Margin | None = None
+
+
+class MissionFile(Strict):
+    """What ground uplinks: way-points with margins, and the tree that runs them."""
+
+    mission: Name
+    doc: str = ""
+    tree: Name = "navigate"
+    segments: Margins = Margins()
+    waypoints: Annotated[tuple[Waypoint, ...], Field(min_length=2)]
+    tree_inputs: dict[str, Any] = {}
+
+    def margins(self, index: int) -> Margins:
+        """The margins of the segment that ends at way-point `index`."""
+        point, default = self.waypoints[index], self.segments
+        return Margins.model_construct(
+            on_track=default.on_track if point.on_track is None else point.on_track,
+            off_track=default.off_track if point.off_track is None else point.off_track,
+            tolerance=default.tolerance if point.tolerance is None else point.tolerance,
+        )
+
+    def route(self) -> tuple[Segment, ...]:
+        """The segments between consecutive way-points; segment i ends at way-point i + 1."""
+        points = [Point(w.x, w.y) for w in self.waypoints]
+        return tuple(
+            Segment(start, end, m.on_track, m.off_track, m.tolerance, index)
+            for index, (start, end) in enumerate(zip(points, points[1:], strict=False))
+            for m in (self.margins(index + 1),)
+        )
+
+
+class Below(Strict):
+    below: Length
+
+
+class BelowAngle(Strict):
+    below: Angle
+
+
+class AtLeast(Strict):
+    at_least: Annotated[int, Field(ge=0)]
+
+
+class Diagnosed(Strict):
+    """The named fault must be recognised `as` a hypothesis within this time of its onset."""
+
+    fault: Name
+    as_: Annotated[Name, Field(alias="as")]
+    within: Duration | None = None
+
+
+OutcomeName = Literal["reached", "safe_hold", "help", "time_limit"]
+
+
+class Expect(Strict):
+    """What the run must come to; what is not said is not judged."""
+
+    outcome: OutcomeName | None = None
+    final_error: Below | None = None
+    driven_beyond_off_track: Below | None = None
+    max_tilt: BelowAngle | None = None
+    waypoints_reached: AtLeast | None = None
+    diagnosed: Diagnosed | None = None
+    strategies_tried: tuple[Name, ...] = ()
+    strategies_not_tried: tuple[Name, ...] = ()
+    always: Name | None = None
+    eventually: Name | None = None
+
+
+class ScenarioFile(Strict):
+    """A mission, a world, a seed, faults, expectations. `world`, `rig` and `faults` are read further on."""
+
+    scenario: Name
+    doc: str = ""
+    mission: MissionFile
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    tier: Literal["full", "geometric"] = "full"
+    backend: Name = "pybullet"
+    localizer: Name = "led_stereo"
+    world: dict[str, Any] = {}
+    rig: dict[str, Any] = {}
+    faults: tuple[dict[str, Any], ...] = ()
+    expect: Expect = Expect()
+    time_limit: Annotated[Duration, Field(gt=0)] = 24 * 3600.0

@@ -1,0 +1,140 @@
+"""The pool composite: when its child fails, the pool chooses a strategy, which runs; then the child again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Protocol
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.composites import Composite
+
+from executive.nodes.base import Trace
+from executive.types import Outcome, Reason
+
+
+class Chooser(Protocol):
+    """What `recover` asks of the pool."""
+
+    def choose(self, failure: Outcome[object]) -> str | None:
+        """The name of the strategy to try for this failure, or None when none is left."""
+        ...
+
+    def report(self, name: str, helped: bool) -> None:
+        """Whether the strategy chosen last made the failure go away."""
+        ...
+
+
+class Recover(Composite):
+    """Runs `child`; at most `attempts` times it lets the pool answer a failure by one of `strategies`.
+
+    A strategy helped when its own tree succeeded and the child, run again, did not fail for the same
+    reason. Which child runs is decided at run time; a drawing shows them all.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        path: str,
+        trace: Trace,
+        pool: Chooser,
+        attempts: int,
+        child: Behaviour,
+        strategies: Mapping[str, Behaviour],
+    ) -> None:
+        super().__init__(name, [child, *strategies.values()])
+        self.path, self.trace, self.pool, self.attempts = path, trace, pool, attempts
+        self.child, self.strategies = child, strategies
+        self.begin()
+
+    def begin(self) -> None:
+        self.tried = 0
+        self.failure: Outcome[object] | None = None
+        self.strategy: str | None = None
+        self.unverified: str | None = None
+
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status is not Status.RUNNING:
+            self.begin()
+            self.current_child = self.child
+            self.trace.last_failure = None
+        running = self.current_child
+        yield from running.tick()
+        status = self.after_child() if running is self.child else self.after_strategy()
+        if status is Status.RUNNING:
+            self.status = status
+        else:
+            self.stop(status)
+        yield self
+
+    def after_child(self) -> Status:
+        """The child has had its tick: done, under way, or failed, which is for the pool to answer."""
+        if self.child.status is Status.RUNNING:
+            return Status.RUNNING
+        failure = self.failure_of_child() if self.child.status is Status.FAILURE else None
+        self.verify(failure)
+        if failure is None:
+            return Status.SUCCESS
+        return self.answer(failure)
+
+    def failure_of_child(self) -> Outcome[object]:
+        noted = self.trace.last_failure
+        return noted[1] if noted else Outcome(Reason.UNEXPECTED, f"{self.child.name} failed without a reason")
+
+    def verify(self, failure: Outcome[object] | None) -> None:
+        """Tell the pool what came of the strategy that ran before the child."""
+        if self.unverified is not None:
+            same = failure is not None and self.failure is not None and failure.reason is self.failure.reason
+            self.pool.report(self.unverified, not same)
+            self.unverified = None
+
+    def answer(self, failure: Outcome[object]) -> Status:
+        """Start the strategy that the pool chooses, or fail."""
+        self.failure = failure
+        if self.tried >= self.attempts:
+            return self.give_up(f"{self.attempts} attempts used up")
+        name = self.pool.choose(failure)
+        if name is None:
+            return self.give_up("no strategy fits")
+        if name not in self.strategies:
+            known = ", ".join(self.strategies) or "none"
+            raise LookupError(
+                f"{self.path}: the pool chose {name!r}, which is not one of its strategies: {known}"
+            )
+        self.tried += 1
+        self.strategy = name
+        self.feedback_message = f"trying {name} ({self.tried} of {self.attempts})"
+        self.current_child = self.strategies[name]
+        return Status.RUNNING
+
+    def give_up(self, why: str) -> Status:
+        """Fail, keeping the physical reason in the detail."""
+        failure = self.failure
+        detail = f"{why}; {failure.reason}: {failure.detail}" if failure else why
+        outcome: Outcome[object] = Outcome(Reason.NO_STRATEGY, detail)
+        self.feedback_message = detail
+        self.trace.last_failure = (self.path, outcome)
+        self.trace.note(self.path, outcome)
+        return Status.FAILURE
+
+    def after_strategy(self) -> Status:
+        """The strategy has had its tick: under way, done (to be verified by the child), or failed."""
+        if self.strategy is None or self.failure is None:
+            raise RuntimeError(f"{self.path}: a strategy ran that was not chosen")
+        status = self.strategies[self.strategy].status
+        if status is Status.RUNNING:
+            return Status.RUNNING
+        if status is Status.FAILURE:
+            self.pool.report(self.strategy, False)
+            return self.answer(self.failure)
+        self.unverified = self.strategy
+        self.trace.last_failure = None
+        self.current_child = self.child
+        return Status.RUNNING
+
+    def stop(self, new_status: Status = Status.INVALID) -> None:
+        """Halt whatever is under way."""
+        for child in self.children:
+            if child.status is Status.RUNNING:
+                child.stop(Status.INVALID)
+        super().stop(new_status)

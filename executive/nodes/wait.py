@@ -1,0 +1,21 @@
+"""Let mission time pass."""
+
+from __future__ import annotations
+
+from executive.nodes.base import In, Leaf
+from executive.types import Outcome, Reason
+from executive.values import DURATION
+
+
+class Wait(Leaf):
+    """Let mission time pass."""
+
+    duration = In(DURATION, "how long to wait")
+
+    def begin(self) -> None:
+        self.until_ticks = self.services.clock.ticks + self.services.clock.ticks_for(self.duration)
+
+    def step(self) -> Outcome[object] | None:
+        if self.services.clock.ticks < self.until_ticks:
+            return None
+        return Outcome(Reason.DONE)

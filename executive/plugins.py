@@ -1,0 +1,42 @@
+"""What the core does not know it reaches by entry point; loaded on use, and loudly when that fails."""
+
+from __future__ import annotations
+
+from importlib.metadata import EntryPoint, entry_points
+
+from executive.errors import PluginError
+
+BACKENDS = "longarm.backends"
+STRATEGIES = "longarm.strategies"
+LOCALIZERS = "longarm.localizers"
+FAULTS = "longarm.faults"
+COMMANDS = "longarm.commands"
+
+
+def found(group: str) -> dict[str, EntryPoint]:
+    """The registered entry points by name, none of them loaded; PluginError if a name is taken twice."""
+    points: dict[str, EntryPoint] = {}
+    for point in sorted(entry_points(group=group), key=lambda p: (p.name, p.value)):
+        other = points.setdefault(point.name, point)
+        if other.value != point.value:
+            raise PluginError(f"{group}: {point.name!r} is registered twice: {other.value} and {point.value}")
+    return points
+
+
+def load(group: str, name: str, kind: type | None = None) -> object:
+    """Import what `name` stands for; PluginError naming the entry point when that fails.
+
+    `kind`, where given, is the type the object must be an instance of. KeyError: no such name.
+    """
+    point = found(group)[name]
+    try:
+        plugin: object = point.load()
+    except Exception as error:  # a plug-in's import may raise anything
+        raise PluginError(f"{_title(point)}: {type(error).__name__}: {error}") from error
+    if kind is not None and not isinstance(plugin, kind):
+        raise PluginError(f"{_title(point)}: got a {type(plugin).__name__}, expected a {kind.__name__}")
+    return plugin
+
+
+def _title(point: EntryPoint) -> str:
+    return f"entry point {point.group}: {point.name} = {point.value}"

@@ -1,0 +1,189 @@
+"""A scenario or mission file → everything a run needs, every default written out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import BaseModel
+
+from executive import plugins
+from executive.backends import BackendSpec
+from executive.config.fault_entries import ResolvedFault, fault_entries
+from executive.config.find import find, portable, shown
+from executive.config.mission import mission_problems
+from executive.config.models import Expect, MissionFile, ScenarioFile
+from executive.config.overrides import override
+from executive.config.rig_overrides import rig_fields, rig_from
+from executive.config.source import Place, Source, read
+from executive.config.validate import Problems, guess, listed, parse
+from executive.config.validate import shown as shown_data
+from executive.errors import ConfigError
+from executive.rig import RigCalibration
+from executive.tree.load import load_tree
+from executive.tree.spec import TreeSpec
+
+
+@dataclass(frozen=True)
+class ResolvedScenario:
+    """All of a run's configuration. Equal values make equal runs."""
+
+    file: ScenarioFile
+    world: BaseModel
+    rig: RigCalibration
+    faults: tuple[ResolvedFault, ...]
+    tree: TreeSpec
+    backend: BackendSpec
+
+    @property
+    def name(self) -> str:
+        return self.file.scenario
+
+    @property
+    def mission(self) -> MissionFile:
+        return self.file.mission
+
+    @property
+    def seed(self) -> int:
+        return self.file.seed
+
+    @property
+    def tier(self) -> str:
+        return self.file.tier
+
+    @property
+    def expect(self) -> Expect:
+        return self.file.expect
+
+    @property
+    def time_limit_s(self) -> float:
+        return self.file.time_limit
+
+    def dump(self) -> str:
+        """YAML with every default written; resolves to an equal value, bit for bit."""
+        data = self.file.model_dump(mode="json", by_alias=True, exclude_none=True)
+        data["world"] = self.world.model_dump(mode="json", by_alias=True, exclude_none=True)
+        data["rig"] = rig_fields(self.rig)
+        data["faults"] = [fault.entry() for fault in self.faults]
+        return yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=110)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Quotes what another YAML reader might take for something else; knows no aliases."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+def resolve_scenario(
+    path: Path | str, seed: int | None = None, tier: str | None = None, overrides: Sequence[str] = ()
+) -> ResolvedScenario:
+    """Read, default and check a scenario (or a mission, which is a scenario with defaults).
+
+    ConfigError with every problem found; PluginError when the backend named cannot be loaded.
+    """
+    path = Path(path)
+    source = as_scenario(read(path, shown(path)))
+    for number, text in enumerate(overrides, 1):
+        source = override(source, text, number)
+    source = _with_value(source, "seed", seed)
+    source = _with_value(source, "tier", tier)
+    return resolve(source)
+
+
+def resolve(source: Source) -> ResolvedScenario:
+    """The same from data already read."""
+    problems = Problems()
+    file = problems.attempt(lambda: parse(source, ScenarioFile))
+    backend_name = _text(source, "backend", "pybullet")
+    backend = problems.attempt(lambda: _backend(source, backend_name))
+    world = problems.attempt(lambda: _world(source, backend)) if backend else None
+    rig = problems.attempt(lambda: rig_from(source, ("rig",)))
+    faults = problems.attempt(lambda: fault_entries(source, ("faults",)))
+    tree_path = problems.attempt(lambda: _tree_path(source))
+    tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
+    if file is not None:
+        problems.found.extend(mission_problems(source, ("mission",), file.mission))
+        problems.found.extend(_not_yet(source))
+        if backend is not None:
+            problems.attempt(lambda: _check_tier(source, file.tier, backend))
+    problems.check()
+    assert file and backend and world is not None and rig and tree and tree_path  # noqa: S101  (else a problem)
+    mission = file.mission.model_copy(update={"tree": portable("trees", tree_path)})
+    return ResolvedScenario(
+        file.model_copy(update={"mission": mission, "world": {}, "rig": {}, "faults": ()}),
+        world,
+        rig,
+        faults or (),
+        tree,
+        backend,
+    )
+
+
+def as_scenario(source: Source) -> Source:
+    """The file's data as a scenario with its mission inline."""
+    data = source.data
+    if isinstance(data, dict) and "mission" in data and "scenario" not in data and "waypoints" in data:
+        return _around(source, str(data["mission"]))
+    if isinstance(data, dict) and isinstance(data.get("mission"), str):
+        place: Place = ("mission",)
+        path = find("missions", data["mission"], source.folder(), source.at(place))
+        return source.graft(place, read(path, shown(path)))
+    return source
+
+
+def _around(mission: Source, name: str) -> Source:
+    start = mission.at(())
+    outer = Source({"scenario": name}, {(): start, ("scenario",): start}, folders={(): mission.folder()})
+    return outer.graft(("mission",), mission)
+
+
+def _with_value(source: Source, key: str, value: int | str | None) -> Source:
+    return source if value is None else override(source, f"{key}={value}", 1, f"--{key}")
+
+
+def _text(source: Source, key: str, default: str) -> str:
+    value = source.data.get(key, default) if isinstance(source.data, dict) else default
+    return value if isinstance(value, str) else default
+
+
+def _backend(source: Source, name: str) -> BackendSpec:
+    known = sorted(plugins.found(plugins.BACKENDS))
+    if name not in known:
+        message = f"got {shown_data(name)}, expected a backend: {listed(known)}{guess(name, known)}"
+        raise ConfigError([source.at(("backend",)).problem(message)])
+    spec = plugins.load(plugins.BACKENDS, name, BackendSpec)
+    assert isinstance(spec, BackendSpec)  # noqa: S101  (load has checked)
+    return spec
+
+
+def _world(source: Source, backend: BackendSpec) -> BaseModel:
+    if not isinstance(source.data, dict) or "world" not in source.data:
+        source = source.graft(("world",), Source({}, {(): source.at(())}, folders={(): source.folder()}))
+    return parse(source, backend.world_model, ("world",))
+
+
+def _tree_path(source: Source) -> Path | None:
+    place: Place = ("mission", "tree")
+    mission = source.data.get("mission") if isinstance(source.data, dict) else None
+    if not isinstance(mission, dict):
+        return None
+    name = mission.get("tree", MissionFile.model_fields["tree"].default)
+    if not isinstance(name, str) or not name:
+        return None
+    return find("trees", name, source.folder(("mission",)), source.at(place))
+
+
+def _check_tier(source: Source, tier: str, backend: BackendSpec) -> None:
+    if tier not in backend.tiers:
+        message = f'got "{tier}", expected a tier of {backend.name}: {listed(backend.tiers)}'
+        raise ConfigError([source.at(("tier",)).problem(message)])
+
+
+def _not_yet(source: Source) -> list[Any]:
+    places: list[Place] = [("expect", "always"), ("expect", "eventually")]
+    message = "temporal logic is not judged yet; expected a scenario without it"
+    return [source.key_at(place).problem(message) for place in places if place in source.values]

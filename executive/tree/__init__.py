@@ -1,0 +1,1 @@
+"""Tree files → validated specifications → py_trees."""

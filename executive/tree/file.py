@@ -1,0 +1,55 @@
+"""The outer shape of a tree file: its name, its ports, its root."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from executive.config.source import Source
+from executive.config.validate import Problems, Strict, guess, listed
+from executive.errors import ConfigError
+from executive.nodes.base import REQUIRED, Direction, PortSpec
+from executive.tree.literals import literal
+from executive.values import VALUE_TYPES
+
+PortName = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
+
+
+class PortDeclaration(Strict):
+    """A value that is passed to the tree."""
+
+    type: str
+    direction: Literal["in", "out", "inout"] = "in"
+    default: Any = None
+    doc: str = ""
+
+
+class TreeFile(Strict):
+    """A tree file; `root` is read node by node."""
+
+    tree: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
+    doc: str = ""
+    ports: dict[PortName, PortDeclaration] = Field(default_factory=dict)
+    root: Any
+
+
+def declared_ports(source: Source, file: TreeFile) -> tuple[PortSpec, ...]:
+    """The tree's ports; ConfigError for unknown types and defaults that do not fit them."""
+    problems = Problems()
+    made = [problems.attempt(lambda n=n, d=d: _port(source, n, d)) for n, d in file.ports.items()]  # type: ignore[misc]
+    problems.check()
+    return tuple(port for port in made if port is not None)
+
+
+def _port(source: Source, name: str, declared: PortDeclaration) -> PortSpec:
+    place = ("ports", name)
+    if declared.type not in VALUE_TYPES:
+        known = list(VALUE_TYPES)
+        message = f'got the unknown type "{declared.type}", expected {listed(known)}'
+        raise ConfigError([source.at((*place, "type")).problem(message + guess(declared.type, known))])
+    kind = VALUE_TYPES[declared.type]
+    default: object = REQUIRED if declared.direction == "in" else None
+    if declared.default is not None:
+        default = literal(source, (*place, "default"), kind)
+    return PortSpec(name, kind, Direction(declared.direction), declared.doc, default)

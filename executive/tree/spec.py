@@ -1,0 +1,98 @@
+"""A tree as read from files: everything checked, nothing instantiated. Drawings are made from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from executive.config.source import Mark
+from executive.guards import Guard
+from executive.nodes.base import PortSpec
+from executive.values import ValueType
+
+
+@dataclass(frozen=True)
+class Reference:
+    """`{segment.end}`: a value of the tree, and attributes of it."""
+
+    name: str
+    attributes: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return "{" + ".".join((self.name, *self.attributes)) + "}"
+
+
+@dataclass(frozen=True)
+class Literal:
+    """A value given in the file, in SI; `text` is how the file says it."""
+
+    value: object
+    text: str = field(default="", compare=False)
+
+    def __str__(self) -> str:
+        return self.text or str(self.value)
+
+
+PortValue = Reference | Literal
+
+GUARDS = ("skip_if", "while", "success_if", "failure_if")
+
+
+@dataclass(frozen=True)
+class NodeSpec:
+    """One node of a tree file. `tree` is set where it is another tree, `item` where it is a for_each."""
+
+    type: str
+    category: str
+    name: str
+    mark: Mark
+    ports: Mapping[str, PortValue] = field(default_factory=dict)
+    guards: Mapping[str, Guard] = field(default_factory=dict)
+    children: tuple[NodeSpec, ...] = ()
+    tree: TreeSpec | None = None
+    item: str | None = None
+
+    def literal(self, port: str) -> Any:
+        """The value of a port that only takes literals."""
+        value = self.ports[port]
+        if not isinstance(value, Literal):
+            raise TypeError(f"{self.type}.{port} is not a literal")
+        return value.value
+
+
+@dataclass(frozen=True)
+class TreeSpec:
+    """A tree file. `values` are its named values with their types, ports and inner ones."""
+
+    name: str
+    doc: str
+    file: str
+    ports: tuple[PortSpec, ...]
+    root: NodeSpec
+    values: Mapping[str, ValueType[Any]]
+    size: int = 1
+    """Nodes in all, sub-trees unfolded."""
+
+
+def under(path: str, nodes: tuple[NodeSpec, ...]) -> Iterator[tuple[str, NodeSpec]]:
+    """The children of the node at `path` with their paths: names made unique among siblings by #2, #3, ..."""
+    seen: dict[str, int] = {}
+    for node in nodes:
+        seen[node.name] = count = seen.get(node.name, 0) + 1
+        yield f"{path}/{node.name}" + (f"#{count}" if count > 1 else ""), node
+
+
+def root_of(path: str, tree: TreeSpec) -> tuple[str, NodeSpec]:
+    """The root node of a tree that stands at `path`, with its own path."""
+    return f"{path}/{tree.root.name}", tree.root
+
+
+def walk(tree: TreeSpec) -> Iterator[tuple[str, NodeSpec]]:
+    """Every node with its path, sub-trees unfolded, parents first."""
+    stack = [root_of(tree.name, tree)]
+    while stack:
+        path, node = stack.pop()
+        yield path, node
+        inner = [root_of(path, node.tree)] if node.tree else list(under(path, node.children))
+        stack.extend(reversed(inner))

@@ -1,0 +1,103 @@
+"""What the tree tests share: services with a clock and a scripted pool, and a few leaves that keep a diary."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+from executive.clock import Clock
+from executive.nodes import LEAVES
+from executive.nodes.base import FromTree, In, InOut, Leaf, Out
+from executive.types import Outcome, Reason
+from executive.values import INTEGER, LENGTH, POINT, POSE, SEGMENT, TEXT
+
+DIARY: str = "diary"
+
+
+class Act(Leaf):
+    """Run for some ticks, then end with a reason; note what happens in the diary."""
+
+    ticks = In(INTEGER, "ticks under way", default=0)
+    reason = In(TEXT, "how it ends", default="done")
+    say = In(TEXT, "what to note", default="")
+
+    def begin(self) -> None:
+        self.services.diary.append(f"begin {self.say or self.name}")
+        self.left = self.ticks
+
+    def step(self) -> Outcome[object] | None:
+        if self.reason == "raise" and self.left == 0:
+            raise ValueError("broken")
+        self.left -= 1
+        return None if self.left >= 0 else Outcome(Reason(self.reason), "as told")
+
+    def halt(self) -> None:
+        self.services.diary.append(f"halt {self.say or self.name}")
+
+
+class Note(Leaf):
+    """Note a length in the diary."""
+
+    value = In(LENGTH, "what to note", default=FromTree("length"))
+
+    def step(self) -> Outcome[object]:
+        self.services.diary.append(self.value)
+        return Outcome(Reason.DONE)
+
+
+class Visit(Leaf):
+    """Note the end of a segment."""
+
+    target = In(POINT, "where to")
+    segment = In(SEGMENT, "the segment under way", default=FromTree("segment"))
+
+    def step(self) -> Outcome[object]:
+        self.services.diary.append((self.target, self.segment and self.segment.index))
+        return Outcome(Reason.DONE)
+
+
+class Measure(Leaf):
+    """Write a length."""
+
+    value = Out(LENGTH, "what was measured")
+
+    def step(self) -> Outcome[object]:
+        self.value = 0.25
+        return Outcome(Reason.DONE)
+
+
+class Pose(Leaf):
+    """Read and write a pose."""
+
+    pose = InOut(POSE, "the pose")
+
+    def step(self) -> Outcome[object]:
+        return Outcome(Reason.DONE)
+
+
+TEST_LEAVES: dict[str, type[Leaf]] = LEAVES | {
+    "act": Act,
+    "note": Note,
+    "visit": Visit,
+    "measure": Measure,
+    "see": Pose,
+}
+
+
+class ScriptedPool:
+    """Chooses the names given, in turn; keeps what it was told."""
+
+    def __init__(self, *names: str | None) -> None:
+        self.names, self.failures, self.reports = list(names), [], []
+
+    def choose(self, failure: Outcome[object]) -> str | None:
+        self.failures.append(failure)
+        return self.names.pop(0) if self.names else None
+
+    def report(self, name: str, helped: bool) -> None:
+        self.reports.append((name, helped))
+
+
+def services(pool: Any = None) -> Any:
+    """The few services that these leaves use."""
+    return SimpleNamespace(clock=Clock(1.0), pool=pool or ScriptedPool(), diary=[])
