@@ -1,0 +1,41 @@
+"""What a simulation or a robot registers under `longarm.backends`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import BaseModel
+
+from executive.ports import Backend
+from executive.rig import RigCalibration
+from executive.types import Segment
+
+
+@dataclass(frozen=True)
+class BackendRequest:
+    """All that a backend is told: nothing of the tree, nothing of the expectations.
+
+    `world` is an instance of the backend's own `world_model`; `route` is the plan as ground uplinked it;
+    `truth_path` is where a simulation writes its truth (None: nowhere); `tick_s` the length of a tick [s].
+    """
+
+    world: BaseModel
+    route: tuple[Segment, ...]
+    seed: int
+    tier: str
+    rig: RigCalibration
+    truth_path: Path | None
+    tick_s: float
+
+
+@dataclass(frozen=True)
+class BackendSpec:
+    """A backend by name: its world's schema, the tiers it can play, and how to make one."""
+
+    name: str
+    doc: str
+    world_model: type[BaseModel]
+    tiers: tuple[str, ...]
+    create: Callable[[BackendRequest], Backend]
