@@ -39,5 +39,19 @@ ROUTE: ValueType[tuple[Segment, ...]] = ValueType("Route", tuple, literal=False)
 
 VALUE_TYPES: dict[str, ValueType[object]] = {
     t.name: t  # type: ignore[misc]
-    for t in (LENGTH, ANGLE, DURATION, SPEED, NUMBER, INTEGER, FLAG, TEXT, QUALITY, POINT, POSE, SEGMENT, ROUTE)
+    for t in (
+        LENGTH,
+        ANGLE,
+        DURATION,
+        SPEED,
+        NUMBER,
+        INTEGER,
+        FLAG,
+        TEXT,
+        QUALITY,
+        POINT,
+        POSE,
+        SEGMENT,
+        ROUTE,
+    )
 }

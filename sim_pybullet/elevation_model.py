@@ -58,7 +58,9 @@ def read_model(path: Path, cell_m: float | None = None) -> ElevationModel:
     if cell is None:
         raise TerrainError(f"{path}: the file does not say its cell size; give `cell`")
     if heights.ndim != 2 or min(heights.shape) < 4:
-        raise TerrainError(f"{path}: got an array of shape {heights.shape}, expected one band of 4 x 4 or more")
+        raise TerrainError(
+            f"{path}: got an array of shape {heights.shape}, expected one band of 4 x 4 or more"
+        )
     if not np.isfinite(heights).all():
         raise TerrainError(f"{path}: {int((~np.isfinite(heights)).sum())} cells hold no height")
     return ElevationModel(np.flipud(np.asarray(heights, dtype=np.float64)), float(cell))

@@ -27,12 +27,18 @@ class Relief:
     slope_azimuth_rad: float = 0.0  # direction in which the ground rises, from site x, left positive
 
 
-def make_ground(relief: Relief, low_m: Vec2, width_m: float, cell_m: float, rng: np.random.Generator) -> Terrain:
+def make_ground(
+    relief: Relief, low_m: Vec2, width_m: float, cell_m: float, rng: np.random.Generator
+) -> Terrain:
     """A square of ground `width_m` wide whose lower left corner is `low_m`; 0 at the site origin."""
     count = math.ceil(width_m / cell_m) + 1
     axis = np.arange(count) * cell_m
     x, y = np.meshgrid(low_m[0] + axis, low_m[1] + axis)
-    z = relief.roughness_m * fractal(count, cell_m, rng) if relief.roughness_m > 0 else np.zeros((count, count))
+    z = (
+        relief.roughness_m * fractal(count, cell_m, rng)
+        if relief.roughness_m > 0
+        else np.zeros((count, count))
+    )
     for _ in range(relief.craters):
         centre = rng.uniform(low_m, np.add(low_m, width_m))
         z = z + crater(x - centre[0], y - centre[1], float(rng.uniform(*CRATER_DIAMETERS_M)))
@@ -44,8 +50,10 @@ def make_ground(relief: Relief, low_m: Vec2, width_m: float, cell_m: float, rng:
 def fractal(count: int, cell_m: float, rng: np.random.Generator) -> Array:
     """Fractional Brownian relief of RMS 1, shape (count, count): spectral density k^-(2H+2) below 2 m."""
     padded = 1 << (count - 1).bit_length()  # made larger and cut, so that opposite edges do not match
-    k = 2 * math.pi * np.hypot(
-        np.fft.fftfreq(padded, cell_m)[:, None], np.fft.rfftfreq(padded, cell_m)[None, :]
+    k = (
+        2
+        * math.pi
+        * np.hypot(np.fft.fftfreq(padded, cell_m)[:, None], np.fft.rfftfreq(padded, cell_m)[None, :])
     )
     shortest = 2 * math.pi / LONGEST_M
     amplitude = np.where(k >= shortest, np.maximum(k, shortest) ** -(HURST + 1.0), 0.0)

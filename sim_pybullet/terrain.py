@@ -29,7 +29,9 @@ class Terrain:
 
     def __post_init__(self) -> None:
         if self.elevation_m.ndim != 2 or min(self.elevation_m.shape) < 2:
-            raise ValueError(f"got elevations of shape {self.elevation_m.shape}, expected two axes of 2 or more")
+            raise ValueError(
+                f"got elevations of shape {self.elevation_m.shape}, expected two axes of 2 or more"
+            )
         self.elevation_m.setflags(write=False)
 
     @property

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from executive.classification import Classification
-from executive.clock import Clock
 from executive.pool import Pool
+
+from executive.clock import Clock
 from executive.ports import Devices, Localizer
 from executive.rig import RigCalibration
 from executive.types import Call, Outcome, PoseEstimate, Segment
