@@ -15,6 +15,7 @@ from sim_pybullet.procedural import fractal, levelled
 from sim_pybullet.terrain import Terrain, TerrainError
 
 MODEL_PIXEL_SCALE = "ModelPixelScaleTag"
+NO_DATA = "GDAL_NODATA"
 DEFAULT_LANDER_X_M = 2.0
 
 
@@ -69,9 +70,13 @@ def read_model(path: Path, cell_m: float | None = None) -> ElevationModel:
 def _read_tiff(path: Path) -> tuple[Array, float | None]:
     try:
         with tifffile.TiffFile(path) as tiff:
-            page = tiff.pages[0]
+            page = tiff.pages.first
             tag = page.tags.get(MODEL_PIXEL_SCALE)
-            return page.asarray(), None if tag is None else _square_cell(path, tag.value)
+            hole = page.tags.get(NO_DATA)
+            heights = page.asarray().astype(np.float64)
+            if hole is not None:
+                heights[heights == float(hole.value)] = np.nan
+            return heights, None if tag is None else _square_cell(path, tag.value)
     except tifffile.TiffFileError as error:
         raise TerrainError(f"{path}: not a readable TIFF: {error}") from error
 
@@ -89,7 +94,7 @@ def cut(
     scale: float,
     cell_m: float,
 ) -> Terrain:
-    """The window of the model as ground around the lander, bicubically resampled to cells of at most `cell_m`.
+    """The window of the model as ground around the lander, bicubic, in cells of at most `cell_m`.
 
     `lander_m` is the lander's place from the window's lower left corner, in model metres; by default 2 m in,
     half way up. `scale` enlarges all three axes alike. TerrainError if the window leaves the model.

@@ -12,7 +12,7 @@ GROUND_FRICTION = 1.0  # Bullet multiplies the two frictions of a contact; the s
 
 
 def add_terrain(client: int, terrain: Terrain) -> int:
-    """The terrain as a heightfield; returns its body. Bullet centres the grid on its extents in x, y and z."""
+    """The terrain as a heightfield; returns its body. Bullet centres it on its extents in x, y and z."""
     z = terrain.elevation_m
     rows, cols = z.shape
     shape = pybullet.createCollisionShape(

@@ -1,4 +1,4 @@
-"""The pan-tilt unit: it turns at a finite rate and misses its target a little, which its encoders do not see."""
+"""The pan-tilt unit: it turns at a finite rate and misses its target a little, unseen by its encoders."""
 
 from __future__ import annotations
 

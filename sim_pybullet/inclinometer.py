@@ -13,7 +13,7 @@ from sim_pybullet.actions import PerTick
 
 
 def roll_pitch(rotation_site_body: Array) -> tuple[float, float]:
-    """Rotation about the body's x and y axes, R = Rz(yaw) Ry(pitch) Rx(roll); pitch positive nose-down [rad]."""
+    """Rotation about body x and y, R = Rz(yaw) Ry(pitch) Rx(roll); pitch positive nose-down [rad]."""
     r = rotation_site_body
     return math.atan2(float(r[2, 1]), float(r[2, 2])), -math.asin(max(-1.0, min(1.0, float(r[2, 0]))))
 

@@ -13,12 +13,14 @@ from executive.types import Array, Vec3
 
 @dataclass(frozen=True, eq=False)
 class CabinChain:
-    """T_site_body, T_site_arm, T_site_cabin, T_site_plc; 4x4, read-only."""
+    """T_site_body, T_site_arm, T_site_cabin, T_site_plc, 4x4, read-only; and the angles they follow from."""
 
     body: Array
     arm: Array
     cabin: Array
     plc: Array
+    arm_rad: float
+    cabin_rad: float
 
 
 def transform(rotation: Array, translation_m: Array | Vec3) -> Array:
@@ -50,4 +52,4 @@ def cabin_chain(
     plc = cabin @ transform(level, calibration.plc_offset_cabin_m)
     for matrix in (body, arm, cabin, plc):
         matrix.setflags(write=False)
-    return CabinChain(body, arm, cabin, plc)
+    return CabinChain(body, arm, cabin, plc, arm_rad, cabin_rad)

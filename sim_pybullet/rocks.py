@@ -26,7 +26,7 @@ def scatter(
     rover: RoverCalibration,
     rng: np.random.Generator,
 ) -> tuple[Rock, ...]:
-    """Up to `count` rocks in `area`; none where the rover may drive, none at the lander. Fewer if it is full."""
+    """Up to `count` rocks in `area`, fewer if it is full; none where the rover may drive or at the lander."""
     rocks: list[Rock] = []
     half_diagonal_m = math.hypot(rover.length_m, rover.width_m) / 2  # whichever way it stands
     for _ in range(count * TRIES_PER_ROCK):

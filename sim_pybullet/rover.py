@@ -99,14 +99,16 @@ class RoverBody:
 
     def command(self, motions: tuple[TrackMotion, TrackMotion], step_s: float = 0.0) -> None:
         """Advance both shoes' setpoints by `step_s` at these rates and drive the joints there."""
-        joints, targets, rates = [], [], []
+        joints: list[int] = []
+        targets: list[float] = []
+        rates: list[float] = []
         for side, motion in enumerate(motions):
             setpoint = self._setpoints[side]
             setpoint.yaw_rad += motion.yaw_rad_s * step_s
             setpoint.side_m += motion.side_m_s * step_s
             setpoint.belt_m += motion.belt_m_s * step_s
             if step_s > 0.0:
-                self._rebase(side, motion)
+                self._rebase(side)
             joints += [TRACK_JOINTS[side] + k for k in (YAW, SIDE, BELT)]
             targets += setpoint.values()
             rates += motion.values()
@@ -122,25 +124,23 @@ class RoverBody:
             physicsClientId=self.client,
         )
 
-    def _rebase(self, side: int, motion: TrackMotion) -> None:
+    def _rebase(self, side: int) -> None:
         """Put the shoe back under the chassis where it has gone too far, keeping each joint's lag."""
         setpoint = self._setpoints[side]
         first = TRACK_JOINTS[side]
-        for joint, value, limit, rate in (
-            (first + YAW, setpoint.yaw_rad, REBASE_RAD, motion.yaw_rad_s),
-            (first + SIDE, setpoint.side_m, REBASE_M, motion.side_m_s),
-            (first + BELT, setpoint.belt_m, REBASE_M, motion.belt_m_s),
-        ):
-            if abs(value) < limit:
-                continue
-            position, velocity = pybullet.getJointState(self.id, joint, physicsClientId=self.client)[:2]
-            pybullet.resetJointState(self.id, joint, position - value, velocity, physicsClientId=self.client)
-            if joint == first + YAW:
-                setpoint.yaw_rad = 0.0
-            elif joint == first + SIDE:
-                setpoint.side_m = 0.0
-            else:
-                setpoint.belt_m = 0.0
+        if abs(setpoint.yaw_rad) >= REBASE_RAD:
+            self._shift_joint(first + YAW, setpoint.yaw_rad)
+            setpoint.yaw_rad = 0.0
+        if abs(setpoint.side_m) >= REBASE_M:
+            self._shift_joint(first + SIDE, setpoint.side_m)
+            setpoint.side_m = 0.0
+        if abs(setpoint.belt_m) >= REBASE_M:
+            self._shift_joint(first + BELT, setpoint.belt_m)
+            setpoint.belt_m = 0.0
+
+    def _shift_joint(self, joint: int, by: float) -> None:
+        position, velocity = pybullet.getJointState(self.id, joint, physicsClientId=self.client)[:2]
+        pybullet.resetJointState(self.id, joint, position - by, velocity, physicsClientId=self.client)
 
     def hold_cabin(self, arm_rad: float, cabin_rad: float) -> None:
         """Drive the arm and cabin joints to these angles."""
@@ -195,13 +195,13 @@ class RoverBody:
         )
         return state[4], state[5]
 
-    def push(self, force_site_n: Vec3, at_site_m: Vec3) -> None:
+    def push(self, force_site_n: Vec3, at_site_m: Array) -> None:
         """A force on the chassis during the next step."""
         pybullet.applyExternalForce(
             self.id,
             CHASSIS_LINK,
             force_site_n,
-            at_site_m,
+            at_site_m.tolist(),
             pybullet.WORLD_FRAME,
             physicsClientId=self.client,
         )

@@ -23,7 +23,7 @@ TETHER_ANCHOR_BODY_M: Vec3 = (-0.165, 0.0, 0.045)
 
 @dataclass(frozen=True)
 class Belt:
-    """A track as a stadium: a flat part between two end cylinders; centre at (0, +-gauge/2, radius) of body."""
+    """A stadium: a flat part between two end cylinders; centre at (0, +-gauge/2, radius) of `body`."""
 
     length_m: float
     width_m: float

@@ -30,8 +30,9 @@ def make_terrain(config: TerrainConfig, route: tuple[Segment, ...], seed: int) -
     """The ground of the scenario; TerrainError if it cannot be made or does not cover the route."""
     rng = generator(seed, "terrain")
     if config.dem is not None:
-        window = config.window and Window(config.window.x, config.window.y, config.window.width)
-        lander = config.lander and (config.lander.x, config.lander.y)
+        w = config.window
+        window = Window(w.x, w.y, w.width) if w is not None else None
+        lander = (config.lander.x, config.lander.y) if config.lander is not None else None
         surveyed = cut(read_model(config.dem, config.cell), window, lander, config.scale, CELL_M)
         terrain = roughen(surveyed, config.added_roughness, rng)
     else:
@@ -69,7 +70,7 @@ def make_soils(config: WorldConfig, seed: int) -> SoilMap:
 def start_pose(
     config: WorldConfig, terrain: Terrain, route: tuple[Segment, ...], rig: RigCalibration, seed: int
 ) -> tuple[Vec3, Quat]:
-    """Where the rover is set down: at the first way-point, within its position error, just above the ground."""
+    """Where the rover is set down: at the first way-point with its position error, just above the ground."""
     rng = generator(seed, "start")
     error_m = rng.standard_normal(2) * config.start.position_error
     spread = float(rng.uniform(-HEADING_SPREAD_RAD, HEADING_SPREAD_RAD))

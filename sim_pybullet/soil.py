@@ -1,4 +1,4 @@
-"""What the ground does to tracks: slip under load, turning efficiency, drift on cross slopes, and their scatter.
+"""What the ground does to tracks: slip under load, turning efficiency, drift on cross slopes, scatter.
 
 Slip follows the track form of the Janosi-Hanamoto law, integrated over the contact length L:
 F / F_max = 1 - K / (s L) (1 - exp(-s L / K)), F_max = mu N + c A (Mohr-Coulomb).
@@ -16,10 +16,10 @@ from executive.types import Vec2
 
 @dataclass(frozen=True)
 class Soil:
-    """One kind of ground. Fractions are of 1; scatter is the standard deviation of a smooth field over (x, y).
+    """One kind of ground. Fractions are of 1; scatters are standard deviations of smooth fields over (x, y).
 
-    `yaw_efficiency` is the yaw rate gained over that of ideal tracks; `side_slip` the sideways drift per travel
-    and tangent of the cross slope.
+    `yaw_efficiency` is the yaw rate gained over that of ideal tracks; `side_slip` the sideways drift per
+    travel and tangent of the cross slope; `shear_m` is K.
     """
 
     friction: float

@@ -18,7 +18,7 @@ class TerrainError(LongarmError):
 
 @dataclass(frozen=True, eq=False)
 class Terrain:
-    """Elevation over a regular grid: `elevation_m[row, col]` at x = origin x + col * cell, y = origin y + row * cell.
+    """Elevation over a regular grid: `elevation_m[row, col]` at origin + (col, row) * cell.
 
     Rows run along y, columns along x; heights are relative to the site origin, where they are 0.
     """

@@ -19,7 +19,7 @@ TENSION_SIGMA_N = 0.01
 
 
 class SimTether:
-    """The port, the spool, and the pull on the rover. `jammed` stops the spool: the tether then only stretches."""
+    """The port, the spool, and the pull on the rover. `jammed` stops the spool: then it only stretches."""
 
     def __init__(
         self, spool_site_m: Vec3, limit_m: float, anchor_site_m: Array, clock: Clock, rng: np.random.Generator
@@ -32,7 +32,7 @@ class SimTether:
         self._reading = PerTick(self._measure, lambda: clock.ticks)
 
     def pull(self, anchor_site_m: Array) -> Array:
-        """Pay out if the rover has gone beyond the length; the force on it, towards the spool [N], shape (3,)."""
+        """Pay out if the rover has gone beyond the length; the force on it, to the spool [N], shape (3,)."""
         to_spool = self._spool - anchor_site_m
         distance_m = float(np.linalg.norm(to_spool))
         free_m = self.length_m if self.jammed else self._limit_m

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,7 +34,7 @@ class _Drive:
 
 
 class SimTracks:
-    """The port, and what the world asks each tick. Encoders count the motor; true belts run `gains` times that."""
+    """The port, and what the world asks each tick. Encoders count motors; belts run `gains` times that."""
 
     def __init__(
         self, rover: RoverCalibration, weight_n: float, clock: Clock, rng: np.random.Generator
@@ -47,7 +47,7 @@ class SimTracks:
         self._forces_n = (0.0, 0.0)
         self._over_s = 0.0
         self._drive: _Drive | None = None
-        self._reading = PerTick(self._measure, lambda: clock.ticks)
+        self._reading = PerTick(self._now, lambda: clock.ticks)
 
     @property
     def moving(self) -> bool:
@@ -55,7 +55,7 @@ class SimTracks:
         return self._drive is not None
 
     def drive(self, left_m: float, right_m: float, speed_m_s: float) -> Action[TrackReading]:
-        """Move the belts by these travels; see executive.ports.Tracks. Faster than the motors is not possible."""
+        """Move the belts by these travels (executive.ports.Tracks), at most as fast as the motors can."""
         if not all(map(math.isfinite, (left_m, right_m, speed_m_s))) or speed_m_s <= 0:
             detail = f"got travels {left_m}, {right_m} m at {speed_m_s} m/s, expected finite, speed above 0"
             return ended(Outcome(Reason.OUT_OF_REACH, detail))
@@ -93,7 +93,7 @@ class SimTracks:
         return left_m * self.gains[0], right_m * self.gains[1]
 
     def feel(self, forces_n: tuple[float, float], tick_s: float) -> None:
-        """Take in the belt forces of the tick; ends the drive when it is done or has been blocked too long."""
+        """Take in the belt forces of the tick; end the drive if it is done or blocked for too long."""
         if self._drive is None:
             return
         self._forces_n = (abs(forces_n[0]), abs(forces_n[1]))
@@ -107,12 +107,15 @@ class SimTracks:
     def _finish(self, reason: Reason, detail: str = "") -> None:
         drive, self._drive = self._drive, None
         if drive is not None:
-            drive.action.end(Outcome(reason, detail, self._measure()))
+            last = replace(self._measure(IDLE_CURRENT_A), moving=False)
+            drive.action.end(Outcome(reason, detail, last))
             self._forces_n = (0.0, 0.0)
 
-    def _measure(self) -> TrackReading:
+    def _now(self) -> TrackReading:
+        return self._measure(IDLE_CURRENT_A if self.moving else 0.0)
+
+    def _measure(self, idle: float) -> TrackReading:
         noise = self._rng.standard_normal(2) * CURRENT_SIGMA_A
-        idle = IDLE_CURRENT_A if self.moving else 0.0
         left_m, right_m = (round(m / ENCODER_STEP_M) * ENCODER_STEP_M for m in self._turned_m)
         return TrackReading(
             self._clock.now_s,

@@ -42,6 +42,10 @@ class TrackGround:
         slip = slip_for(load.resistance(self.soil), self.length_m, self.soil.shear_m)
         return belt_m - abs(belt_m) * slip - belt_m * self.scatter
 
+    def slip(self, belt_m: float, load: Load) -> float:
+        """Share of this belt travel that is lost; 0 for no travel."""
+        return 0.0 if belt_m == 0.0 else 1.0 - self.travel(belt_m, load) / belt_m
+
 
 @dataclass(frozen=True)
 class Displacement:

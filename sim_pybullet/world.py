@@ -1,7 +1,7 @@
 """The world in motion: one tick of mission time at a time, quasi-static, asleep while nothing moves.
 
-Mission time runs `time_scale` times faster than Bullet's. At 1.4 mm/s inertia is nothing, so the path does not
-depend on the scale (tests/sim/test_physics.py holds the bound).
+Mission time runs `time_scale` times faster than Bullet's. At 1.4 mm/s inertia is nothing, so the path
+does not depend on the scale (tests/sim/test_physics.py holds the bound).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from sim_pybullet.config import WorldConfig
 from sim_pybullet.ground_body import add_rock, add_terrain
 from sim_pybullet.head import SimHead
 from sim_pybullet.inclinometer import SimInclinometer
-from sim_pybullet.poses import cabin_chain
+from sim_pybullet.poses import CabinChain, cabin_chain
 from sim_pybullet.rover import RoverBody, TrackMotion
 from sim_pybullet.scene import Rock, SceneState
 from sim_pybullet.shape import TETHER_ANCHOR_BODY_M, belt
@@ -83,7 +83,7 @@ class World:
         self._pull = np.zeros(3)
         self._asleep, self._calm_steps, self._restless_steps = False, 0, 0
         self._last_truth_s = -TRUTH_EVERY_S
-        self._scene: tuple[int, SceneState] | None = None
+        self._frames: CabinChain | None = None
         self._settle_down()
         self.tether = SimTether(
             (0.0, 0.0, SPOOL_HEIGHT_M),
@@ -102,7 +102,6 @@ class World:
         """Put one more rock into the world."""
         self.rocks.append(rock)
         add_rock(self._client, rock)
-        self._scene = None
         self.wake()
 
     def advance(self) -> None:
@@ -122,7 +121,7 @@ class World:
 
     def _move(self, belts_m: tuple[float, float], tick_s: float) -> tuple[float, float]:
         """One tick of physics; the mean belt forces in it [N]."""
-        self._scene = None
+        self._frames = None
         moved = self._displacement(belts_m)
         if belts_m != (0.0, 0.0) or self.cabin.moving:
             self.wake()
@@ -164,7 +163,7 @@ class World:
         self.body.command(motions, STEP_S)
         if self._pull.any():
             x, y, z = self._pull
-            self.body.push((float(x), float(y), float(z)), tuple(self._anchor()))  # type: ignore[arg-type]
+            self.body.push((float(x), float(y), float(z)), self._anchor())
         pybullet.stepSimulation(physicsClientId=self._client)
         self.steps += 1
         self._doze()
@@ -189,29 +188,27 @@ class World:
         return anchor
 
     def scene(self) -> SceneState:
-        """What there is to see now."""
-        if self._scene is None or self._scene[0] != self.clock.ticks:
-            self._scene = (self.clock.ticks, self._look())
-        return self._scene[1]
-
-    def _look(self) -> SceneState:
-        position, rotation = self.body.pose()
-        arm_rad, cabin_rad = self.body.cabin_angles()
-        chain = cabin_chain(self.rig.cabin, position, rotation, arm_rad, cabin_rad)
+        """What there is to see now. The rover's frames are worked out anew only after it may have moved."""
+        if self._frames is None:
+            arm_rad, cabin_rad = self.body.cabin_angles()
+            self._frames = cabin_chain(self.rig.cabin, *self.body.pose(), arm_rad, cabin_rad)
+        chain = self._frames
         pan_rad, tilt_rad = self.head.true_rad
+        a, b, c, d = self.led_alive
+        fa, fb, fc, fd = self.led_factor
         return SceneState(
             time_s=self.clock.now_s,
             T_site_body=chain.body,
             T_site_arm=chain.arm,
             T_site_cabin=chain.cabin,
             T_site_plc=chain.plc,
-            arm_rad=arm_rad,
-            cabin_rad=cabin_rad,
+            arm_rad=chain.arm_rad,
+            cabin_rad=chain.cabin_rad,
             head_pan_rad=pan_rad,
             head_tilt_rad=tilt_rad,
             rocks=tuple(self.rocks),
-            led_alive=tuple(self.led_alive),  # type: ignore[arg-type]
-            led_factor=tuple(self.led_factor),  # type: ignore[arg-type]
+            led_alive=(a, b, c, d),
+            led_factor=(fa, fb, fc, fd),
         )
 
     def _write_truth(self, force: bool) -> None:
