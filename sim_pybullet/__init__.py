@@ -1,1 +1,25 @@
 """Rover, terrain, head and cameras in PyBullet, behind the ports that hardware would answer."""
+
+from __future__ import annotations
+
+from executive.backends import BackendRequest, BackendSpec
+from executive.ports import Backend
+from sim_pybullet.config import WorldConfig
+
+__all__ = ["BACKEND"]
+
+
+def _create(request: BackendRequest) -> Backend:
+    """PyBullet, OpenCV and the rest are imported only when a world is made, not to list or validate."""
+    from sim_pybullet.backend import create
+
+    return create(request)
+
+
+BACKEND = BackendSpec(
+    name="pybullet",
+    doc="The rover, the ground and the lander's head in PyBullet, with images in linear radiometry.",
+    world_model=WorldConfig,
+    tiers=("full", "geometric"),
+    create=_create,
+)

@@ -1,0 +1,69 @@
+"""Ground truth of the simulation, for its own record only: no port leads here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from executive.telemetry import TruthRecorder
+from executive.telemetry.events import TruthEvent
+from executive.types import Quat, Vec3
+
+
+@dataclass(frozen=True)
+class TruthSample:
+    """The world at `time_s`: pose of `body` in `site`, true angles, slips (fractions), tether, driving."""
+
+    time_s: float
+    position_site_m: Vec3
+    quat_site_body: Quat
+    pan_rad: float
+    tilt_rad: float
+    arm_rad: float
+    cabin_rad: float
+    slip_left: float
+    slip_right: float
+    tether_m: float
+    tether_n: float
+    driving: bool
+
+
+TruthSink = Callable[[TruthSample], None]
+
+
+class TruthFile:
+    """Writes samples to `truth.mcap`, or nowhere without a path."""
+
+    def __init__(self, path: Path | None) -> None:
+        self._recorder = TruthRecorder(path) if path is not None else None
+
+    def write(self, sample: TruthSample) -> None:
+        """Add one sample."""
+        if self._recorder is not None:
+            self._recorder(_event(sample), sample.time_s)
+
+    def flush(self) -> None:
+        """Hand what was written to the operating system, so that a kill loses a tick at most."""
+        if self._recorder is not None:
+            self._recorder.flush()
+
+    def close(self) -> None:
+        """Complete the file; may be called twice."""
+        if self._recorder is not None:
+            self._recorder.close()
+
+
+def _event(sample: TruthSample) -> TruthEvent:
+    return TruthEvent(
+        position_site_m=sample.position_site_m,
+        quat_site_body=sample.quat_site_body,
+        pan_rad=sample.pan_rad,
+        tilt_rad=sample.tilt_rad,
+        arm_rad=sample.arm_rad,
+        cabin_rad=sample.cabin_rad,
+        slip_left=sample.slip_left,
+        slip_right=sample.slip_right,
+        tether_m=sample.tether_m,
+        tether_n=sample.tether_n,
+    )
