@@ -46,8 +46,13 @@ class CentreError:
     reported_px: float
 
 
-def centre_error(spot: Spot, exposure: Exposure, lit_frames: int, dark_frames: int) -> CentreError:
-    """The error of a marker found in the mean of its lit frames less the mean of the dark ones."""
+def centre_error(
+    spot: Spot, exposure: Exposure, lit_frames: int, dark_frames: int, factor: float | None = None
+) -> CentreError:
+    """The error of a marker found in the mean of its lit frames less the mean of the dark ones.
+
+    `factor` replaces the measured ratio of error to bound.
+    """
     if spot.electrons <= 0 or lit_frames < 1 or dark_frames < 1:
         return CentreError(0.0, 0.0, math.inf, math.inf, math.inf)
     noise_e = exposure.noise_counts * exposure.gain_e * math.sqrt(1 / lit_frames + 1 / dark_frames)
@@ -55,13 +60,13 @@ def centre_error(spot: Spot, exposure: Exposure, lit_frames: int, dark_frames: i
     scale = spot.electrons / noise_e
     snr = scale * math.sqrt(line_u * line_v)
     bound_u, bound_v = 1 / (scale * math.sqrt(slope_u * line_v)), 1 / (scale * math.sqrt(line_u * slope_v))
-    at, found, factor = (np.array(column) for column in zip(*MEASURED, strict=True))
-    excess = float(np.interp(snr, at, factor))
+    at, found, excess = (np.array(column) for column in zip(*MEASURED, strict=True))
+    above = float(np.interp(snr, at, excess)) if factor is None else factor
     return CentreError(
         snr,
         float(np.interp(snr, at, found)),
-        excess * bound_u,
-        excess * bound_v,
+        above * bound_u,
+        above * bound_v,
         math.hypot(math.sqrt(bound_u * bound_v), FLOOR_PX),
     )
 

@@ -22,8 +22,10 @@ class Sensor:
         """`frames` exposures of one expected image (h, w) [e-], as counts (frames, h, w)."""
         mean_e = bloomed(expected_e, self.exposure.full_well_e)
         noise = self._rng.standard_normal((frames, *mean_e.shape), dtype=np.float32)
-        # Above a thousand electrons a Poisson count is a Gaussian to well below a quantisation step.
-        noise *= np.sqrt(mean_e + np.float32(self.exposure.read_noise_e**2))
+        # Above a thousand electrons a Poisson count is a Gaussian to well below a quantisation step; a full
+        # well holds what it holds, so only reading it out is noisy.
+        shot_e2 = np.where(mean_e < self.exposure.full_well_e, mean_e, np.float32(0))
+        noise *= np.sqrt(shot_e2 + np.float32(self.exposure.read_noise_e**2))
         noise += mean_e
         noise *= np.float32(1 / self.exposure.gain_e)
         noise += np.float32(0.5)

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.sim.sensor_scenes import RIG, differences_counts, held_up, level_view, mean_difference_e, picture
 
 from executive.types import Window
 from sim_pybullet.sensor import Sensor
 from sim_pybullet.sunlight import Sun
+from tests.sim.sensor_scenes import RIG, differences_counts, held_up, level_view, mean_difference_e, picture
 
 _BRIGHT = 50.0  # areas are ratios of signals, so a brighter LED only lowers their noise
 
@@ -72,7 +72,8 @@ def _seen(pic, y_m: float, ahead_m: float, camera: int) -> bool:
 
 def _edge_m(seen, inside_m: float, outside_m: float) -> float:
     """Where `seen` turns from true to false, to 1 mm."""
-    assert seen(inside_m) and not seen(outside_m)
+    assert seen(inside_m)
+    assert not seen(outside_m)
     while abs(outside_m - inside_m) > 1e-3:
         middle = (inside_m + outside_m) / 2
         inside_m, outside_m = (middle, outside_m) if seen(middle) else (inside_m, middle)
