@@ -1,0 +1,85 @@
+"""The cheap tier: no images, but marker centres with the error that the full tier was measured to have."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Shot, Window
+from sim_pybullet.error_model import centre_error
+from sim_pybullet.exposing import full_windows
+from sim_pybullet.leds import MarkerOptics, Spot
+from sim_pybullet.projection import head_views
+from sim_pybullet.radiometry import Exposure, spread_reach_px
+from sim_pybullet.scene import SceneState
+
+CENTROID_SIGMA_PX = 15.0  # motion fragments: where the middle of a moving rover seems to be
+_ROVER_MIDDLE_BODY_M = np.array([0.0, 0.0, 0.065])
+
+
+class CentreDeveloper:
+    """Answers a shot with `Centres`.
+
+    A marker that is hidden, dead, outside the window or not found by chance is NaN. A shot in which no LED
+    is lit is one for motion fragments: it answers with the rover's projected middle, the mean over its
+    frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN elsewhere.
+    """
+
+    def __init__(self, optics: MarkerOptics, exposure: Exposure, rng: np.random.Generator) -> None:
+        self._optics, self._exposure, self._rng = optics, exposure, rng
+        self._rig = optics.rig
+
+    def develop(
+        self, shot: Shot, scenes: tuple[SceneState, ...], head: HeadReading, time_s: float
+    ) -> Centres:
+        count = len(self._rig.markers.positions_plc_m)
+        uv_px, sigma_px = np.full((2, count, 2), np.nan), np.full((2, count), np.nan)
+        windows = shot.windows or full_windows(self._rig)
+        for camera in (LEFT, RIGHT):
+            if any(shot.leds):
+                found = self._markers(shot, scenes[-1], camera, windows[camera])
+            else:
+                found = self._middle(scenes, camera, windows[camera])
+            for index, (centre, sigma) in found.items():
+                uv_px[camera, index], sigma_px[camera, index] = centre, sigma
+        return Centres(time_s, shot, uv_px, sigma_px, head)
+
+    def _markers(
+        self, shot: Shot, scene: SceneState, camera: int, window: Window
+    ) -> dict[int, tuple[Array, float]]:
+        view = head_views(self._rig, scene.head_pan_rad, scene.head_tilt_rad)[camera]
+        found = {}
+        dark = shot.leds.count(0)
+        for index, spot in enumerate(self._optics.spots(scene, view)):
+            lit = sum(leds >> index & 1 for leds in shot.leds)
+            error = centre_error(spot, self._exposure, lit, dark)
+            # Drawn for every marker, so that one that vanishes does not change the others' luck.
+            chance, noise = self._rng.uniform(), self._rng.standard_normal(2)
+            if chance < error.found and _within(spot, window):
+                centre = np.array([spot.u_px, spot.v_px]) + noise * (error.sigma_u_px, error.sigma_v_px)
+                found[index] = (centre, error.reported_px)
+        return found
+
+    def _middle(
+        self, scenes: tuple[SceneState, ...], camera: int, window: Window
+    ) -> dict[int, tuple[Array, float]]:
+        seen = []
+        for scene in scenes:
+            view = head_views(self._rig, scene.head_pan_rad, scene.head_tilt_rad)[camera]
+            T = scene.T_site_body
+            seen.append(view.project(T[:3, :3] @ _ROVER_MIDDLE_BODY_M + T[:3, 3])[0])
+        middle = np.mean(seen, axis=0)
+        noise = CENTROID_SIGMA_PX * self._rng.standard_normal(2)
+        inside = (
+            window.u <= middle[0] < window.u + window.width
+            and window.v <= middle[1] < window.v + window.height
+        )
+        return {0: (middle + noise, CENTROID_SIGMA_PX)} if inside else {}
+
+
+def _within(spot: Spot, window: Window) -> bool:
+    """Whether the whole spot falls into the window."""
+    reach = spread_reach_px(spot.size_px, spot.sigma_px) / 2
+    return bool(
+        window.u + reach <= spot.u_px <= window.u + window.width - 1 - reach
+        and window.v + reach <= spot.v_px <= window.v + window.height - 1 - reach
+    )
