@@ -1,0 +1,108 @@
+"""The whole chain of projection: body pose, cabin joints, head angles -> marker pixels, with Jacobian.
+
+The state has ten parts: body pose in `site` (position, rotation vector on the left: the order and the
+meaning of PoseEstimate's covariance), then pan, tilt, arm, cabin. The last four are read from encoders
+with known accuracy; as parts of the state their errors reach the covariance with all correlations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from executive.rig import RigCalibration
+from executive.types import Array, PoseEstimate, Vec2
+from perception.body import Transform, plc_in_body, points_in_body
+from perception.camera import StereoModel
+from perception.rotation import exp_map, matrix_from_quat, rot_y, rot_y_rate, rot_z, rot_z_rate, skew
+
+STATE_SIZE = 10
+_SIGMA_FLOOR_RAD = 1e-7  # an encoder said to be perfect must not make the normal equations infinite
+
+
+@dataclass(frozen=True, eq=False)
+class ChainState:
+    """Body in site, head angles (pan, tilt), cabin joints (arm, cabin) [rad]."""
+
+    site_body: Transform
+    head_rad: Vec2
+    joints_rad: Vec2
+
+    def moved(self, step: Array) -> ChainState:
+        """This state changed by a step of ten (see the module's docstring)."""
+        body = Transform(exp_map(step[3:6]) @ self.site_body.rotation, self.site_body.position_m + step[:3])
+        head = (self.head_rad[0] + float(step[6]), self.head_rad[1] + float(step[7]))
+        joints = (self.joints_rad[0] + float(step[8]), self.joints_rad[1] + float(step[9]))
+        return ChainState(body, head, joints)
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """The rig as a function from state to pixels. `markers_plc_m` is (n, 3)."""
+
+    rig: RigCalibration
+    model: StereoModel
+    markers_plc_m: Array
+
+    @classmethod
+    def of(cls, rig: RigCalibration) -> Chain:
+        return cls(rig, StereoModel.of(rig), np.array(rig.markers.positions_plc_m))
+
+    def site_ih(self, head_rad: Vec2) -> Transform:
+        """Pose of the head in site (executive.rig.HeadCalibration)."""
+        mast = np.array([0.0, 0.0, self.rig.head.mast_height_m])
+        return Transform(rot_z(head_rad[0]) @ rot_y(head_rad[1]), mast)
+
+    def site_plc(self, state: ChainState) -> Transform:
+        """Pose of the marker plane in site."""
+        return state.site_body @ plc_in_body(self.rig.cabin, *state.joints_rad)
+
+    def markers_site(self, state: ChainState) -> Array:
+        """Marker positions (n, 3) in site."""
+        return self.site_plc(state).apply(self.markers_plc_m)
+
+    def project(self, state: ChainState) -> tuple[Array, Array]:
+        """Marker pixels (2, n, 2) and their Jacobian by the state (2, n, 2, 10)."""
+        in_body, by_joints = points_in_body(self.rig.cabin, self.markers_plc_m, *state.joints_rad)
+        R = state.site_body.rotation
+        arms = in_body @ R.T
+        return self.project_points(
+            state.site_body.position_m + arms, state.head_rad, arms, np.einsum("ij,njk->nik", R, by_joints)
+        )
+
+    def project_points(
+        self, points_site_m: Array, head_rad: Vec2, arms_site_m: Array, by_joints: Array
+    ) -> tuple[Array, Array]:
+        """Pixels and Jacobian of points (n, 3) in site, at arms (n, 3) from the body, by_joints (n, 3, 2)."""
+        pan, tilt = head_rad
+        Z, Y = rot_z(pan), rot_y(tilt)
+        head = self.site_ih(head_rad)
+        from_mast = points_site_m - head.position_m
+        uv, by_ih = self.model.project_with_jacobian(from_mast @ head.rotation)
+        by_state = np.empty((len(points_site_m), 3, STATE_SIZE))
+        by_state[:, :, :3] = head.rotation.T
+        by_state[:, :, 3:6] = -head.rotation.T @ skew(arms_site_m)
+        by_state[:, :, 6] = from_mast @ (rot_z_rate(pan) @ Y)
+        by_state[:, :, 7] = from_mast @ (Z @ rot_y_rate(tilt))
+        by_state[:, :, 8:] = head.rotation.T @ by_joints
+        return uv, np.asarray(by_ih @ by_state)
+
+    def encoder_sigma_rad(self) -> Array:
+        """Standard deviations of pan, tilt, arm, cabin; a uniform error of half-width a has a / sqrt(3)."""
+        head, cabin = self.rig.head, self.rig.cabin
+        uniform = np.array([head.pan_accuracy_rad, head.tilt_accuracy_rad]) / np.sqrt(3.0)
+        sigma = np.concatenate([uniform, [cabin.joint_sigma_rad] * 2])
+        return np.maximum(sigma, _SIGMA_FLOOR_RAD)
+
+    def state_covariance(self, pose_covariance: Array) -> Array:
+        """Covariance (10, 10) of a state whose body pose has this (6, 6) one."""
+        P = np.zeros((STATE_SIZE, STATE_SIZE))
+        P[:6, :6] = pose_covariance
+        P[6:, 6:] = np.diag(self.encoder_sigma_rad() ** 2)
+        return P
+
+
+def body_transform(pose: PoseEstimate) -> Transform:
+    """Body in site of a pose estimate."""
+    return Transform(matrix_from_quat(pose.quat_site_body), np.array(pose.position_site_m))

@@ -1,0 +1,101 @@
+"""Difference image analysis (DIA): one difference image per marker from an on/off sequence (paper, 4.1).
+
+A sequence is: reference, one image per marker, and again N times, closed by a reference. Each marker's
+frame is compared with the two references that bracket it, weighted by nearness in time, so a steady drift
+of the light cancels; N such differences are averaged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.types import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Difference:
+    """Difference images (markers, h, w) [counts] and their standard deviations (markers, h, w) [counts].
+
+    `reference` (h, w) is the mean image with all markers dark. `pairs` counts on-frames per marker.
+    """
+
+    images: NDArray[np.float32]
+    sigma: NDArray[np.float32]
+    reference: NDArray[np.float32]
+    pairs: int
+
+
+def led_sequence(markers: int, pairs: int, skip: frozenset[int] = frozenset()) -> tuple[int, ...]:
+    """LED masks of a shot: reference, each marker alone, `pairs` times over, closed by a reference."""
+    if pairs < 1 or markers < 1:
+        raise ValueError(f"got {markers} markers and {pairs} pairs, expected at least 1 of each")
+    cycle = (0, *(1 << m for m in range(markers) if m not in skip))
+    return cycle * pairs + (0,)
+
+
+def pair_weights(leds: Sequence[int], markers: int) -> Array:
+    """Weights (markers, frames) that turn a stack into difference images; a marker never lit has zeros.
+
+    Raises ValueError without a dark frame or with two markers lit at once.
+    """
+    dark = [i for i, mask in enumerate(leds) if mask == 0]
+    if not dark:
+        raise ValueError("got a sequence without a dark frame, expected at least one")
+    W = np.zeros((markers, len(leds)))
+    for i, mask in enumerate(leds):
+        if mask == 0:
+            continue
+        marker = mask.bit_length() - 1
+        if mask != 1 << marker or marker >= markers:
+            raise ValueError(f"frame {i}: got LED mask {mask:#b}, expected one of {markers} markers alone")
+        W[marker, i] += 1.0
+        for j, share in _bracket(i, dark):
+            W[marker, j] -= share
+    on = np.array([sum(mask == 1 << m for mask in leds) for m in range(markers)])
+    weights: Array = W / np.maximum(on, 1)[:, None]
+    return weights
+
+
+def _bracket(i: int, dark: list[int]) -> list[tuple[int, float]]:
+    """The dark frames next to frame i, with shares that interpolate in time."""
+    before = max((j for j in dark if j < i), default=None)
+    after = min((j for j in dark if j > i), default=None)
+    if before is None or after is None:
+        return [(before if before is not None else dark[0], 1.0)]
+    share = (i - before) / (after - before)
+    return [(before, 1.0 - share), (after, share)]
+
+
+def difference(
+    frames: NDArray[np.float32], leds: Sequence[int], markers: int, noise_counts: float
+) -> Difference:
+    """Difference images of a stack (frames, h, w) [counts].
+
+    Noise is taken from the images themselves, not below half the calibrated `noise_counts` (which guards
+    against an empty or clipped window); within an image its variance goes with the brightness (shot noise).
+    """
+    if frames.ndim != 3 or len(frames) != len(leds):
+        raise ValueError(f"frames: got shape {frames.shape}, expected ({len(leds)}, height, width)")
+    W = pair_weights(leds, markers)
+    flat = frames.reshape(len(frames), -1)
+    images = (W.astype(np.float32) @ flat).reshape(markers, *frames.shape[1:])
+    reference = frames[[mask == 0 for mask in leds]].mean(axis=0)
+    relative = np.sqrt(np.clip(reference / max(float(reference.mean()), 1.0), 0.2, 4.0))
+    sigma = np.stack(
+        [
+            _noise(image / relative, noise_counts * np.linalg.norm(w)) * relative
+            for image, w in zip(images, W, strict=True)
+        ]
+    )
+    pairs = min((leds.count(1 << m) for m in range(markers) if 1 << m in leds), default=0)
+    return Difference(images, sigma.astype(np.float32), reference, pairs)
+
+
+def _noise(image: NDArray[np.float32], expected: np.floating) -> float:
+    """Robust standard deviation of a difference image (interquartile range), at least half the expected."""
+    low, high = np.percentile(image, (25, 75))
+    return max(float(high - low) / 1.349, 0.5 * float(expected), 1e-6)

@@ -1,0 +1,54 @@
+"""The Cramer-Rao bound: how well centres and poses can be known from given images, by any method."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from executive.types import Array
+from perception.chain import STATE_SIZE, Chain, ChainState
+from perception.pose import roll_pitch
+from perception.psf import Spread
+
+
+def centre_bound(spread: Spread, flux_counts: float, sigma_counts: float, offset_px: Array) -> Array:
+    """Least covariance (2, 2) [px2] of a centre at `offset_px` (2,) from a pixel, flux unknown.
+
+    For a difference image with white noise `sigma_counts`; formal below a filter SNR of about 4.
+    """
+    reach = spread.radius_px + 2
+    grid = np.arange(-reach, reach + 1.0)
+    u, v = grid - offset_px[0], grid - offset_px[1]
+    pu, pv = spread.profile(u), spread.profile(v)
+    J = np.stack(
+        [
+            np.outer(pv, pu),
+            -flux_counts * np.outer(pv, spread.profile_slope(u)),
+            -flux_counts * np.outer(spread.profile_slope(v), pu),
+        ]
+    ).reshape(3, -1)
+    information = J @ J.T / sigma_counts**2
+    return np.asarray(np.linalg.inv(information)[1:, 1:], dtype=np.float64)
+
+
+def pose_bound(
+    chain: Chain,
+    state: ChainState,
+    centre_covariance_px2: Array,
+    with_tilt: bool = True,
+    exact_head: bool = False,
+) -> Array:
+    """Least covariance (6, 6) of the body pose at a true state, from centres with covariance (2, n, 2, 2).
+
+    NaN covariances stand for markers not seen. `with_tilt` adds the inclinometers; `exact_head` takes the
+    head and joint angles for perfectly known.
+    """
+    _, J = chain.project(state)
+    seen = np.isfinite(centre_covariance_px2).all(axis=(-1, -2))
+    J, W = J[seen], np.linalg.inv(centre_covariance_px2[seen])
+    information = np.einsum("mik,mij,mjl->kl", J, W, J)
+    weight = np.full(4, 1e14) if exact_head else chain.encoder_sigma_rad() ** -2
+    information[range(6, STATE_SIZE), range(6, STATE_SIZE)] += weight
+    if with_tilt:
+        _, by_turn = roll_pitch(state.site_body.rotation)
+        information[3:6, 3:6] += by_turn.T @ by_turn / chain.rig.rover.inclinometer_sigma_rad**2
+    return np.asarray(np.linalg.inv(information)[:6, :6], dtype=np.float64)

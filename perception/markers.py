@@ -1,0 +1,141 @@
+"""Find a marker in a difference image: matched filter, then a maximum-likelihood fit of its centre.
+
+The filter is the expected point spread; its output over its own noise is the SNR of a marker centred
+there. Peaks above a threshold set by the false-alarm rate for the whole window are fitted for column, row
+and flux; the covariance of the centre is the Cramer-Rao bound at the fitted flux.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from executive.types import Array
+from perception.psf import Spread
+
+_FIT_STEPS = 12
+_MAX_STEP_PX = 0.7
+_CONVERGED_PX = 1e-4
+_MAX_WANDER_PX = 2.0
+SIGMA_FLOOR_PX = 0.01  # what is left of lens calibration and spread model
+
+
+@dataclass(frozen=True, eq=False)
+class Detection:
+    """A marker candidate: centre in full-frame pixels (u, v) with covariance (2, 2) [px2], flux [counts]."""
+
+    uv_px: Array
+    covariance_px2: Array
+    flux_counts: float
+    flux_sigma_counts: float
+
+    @property
+    def snr(self) -> float:
+        return self.flux_counts / self.flux_sigma_counts
+
+
+def detection_threshold(pixels: int, false_alarm_rate: float) -> float:
+    """SNR that noise alone exceeds somewhere among `pixels` filter outputs at this rate (one-sided)."""
+    if pixels < 1 or not 0 < false_alarm_rate < 1:
+        raise ValueError(f"got {pixels} pixels at rate {false_alarm_rate}, expected 1 or more, in (0, 1)")
+    return float(-ndtri(false_alarm_rate / pixels))
+
+
+def filter_snr(image: NDArray[np.float32], sigma: NDArray[np.float32], spread: Spread) -> NDArray[np.float32]:
+    """SNR (h, w) of a marker centred at each pixel of a difference image with noise `sigma` (h, w)."""
+    kernel = spread.kernel().astype(np.float32)
+    whitened = (image / sigma**2).astype(np.float32)
+    signal = cv2.filter2D(whitened, cv2.CV_32F, kernel, borderType=cv2.BORDER_CONSTANT)
+    power = cv2.filter2D(1.0 / sigma**2, cv2.CV_32F, kernel**2, borderType=cv2.BORDER_CONSTANT)
+    return np.asarray(signal / np.sqrt(np.maximum(power, 1e-20)), dtype=np.float32)
+
+
+def find_markers(
+    image: NDArray[np.float32],
+    sigma: NDArray[np.float32],
+    spread: Spread,
+    corner_px: tuple[int, int] = (0, 0),
+    false_alarm_rate: float = 1e-3,
+    at_most: int = 4,
+) -> list[Detection]:
+    """Marker candidates of one difference image (h, w) [counts], the brightest first.
+
+    `corner_px` is the full-frame (column, row) of the image's first pixel. Raises ValueError on arrays of
+    other shapes, smaller than the spread, or with values that are not finite.
+    """
+    _check(image, sigma, spread)
+    threshold = detection_threshold(image.size, false_alarm_rate)
+    snr = filter_snr(image, sigma, spread)
+    found = (_fit(image, sigma, spread, u, v) for u, v in _peaks(snr, threshold, 2 * at_most))
+    kept: list[Detection] = []
+    for detection in sorted((d for d in found if d is not None), key=lambda d: -d.snr):
+        apart = all(np.hypot(*(detection.uv_px - k.uv_px)) > spread.radius_px / 2 for k in kept)
+        if apart and detection.snr > 0.9 * threshold:
+            kept.append(detection)
+    corner = np.array(corner_px, dtype=float)
+    return [
+        Detection(d.uv_px + corner, d.covariance_px2, d.flux_counts, d.flux_sigma_counts)
+        for d in kept[:at_most]
+    ]
+
+
+def _check(image: NDArray[np.float32], sigma: NDArray[np.float32], spread: Spread) -> None:
+    least = 2 * spread.radius_px + 1
+    if image.ndim != 2 or min(image.shape) < least or sigma.shape != image.shape:
+        raise ValueError(
+            f"got an image of shape {image.shape} with noise of shape {sigma.shape}, "
+            f"expected both ({least} or more, {least} or more)"
+        )
+    if not (np.isfinite(image).all() and np.isfinite(sigma).all() and sigma.min() > 0):
+        raise ValueError(
+            "got an image with non-finite values or noise of 0, expected finite and positive noise"
+        )
+
+
+def _peaks(snr: NDArray[np.float32], threshold: float, at_most: int) -> list[tuple[int, int]]:
+    """Columns and rows of local maxima above the threshold, the highest first."""
+    highest = cv2.dilate(snr, np.ones((3, 3), np.uint8), borderType=cv2.BORDER_REPLICATE)
+    rows, columns = np.nonzero((snr >= highest) & (snr > threshold))
+    order = np.argsort(-snr[rows, columns])[:at_most]
+    return [(int(columns[i]), int(rows[i])) for i in order]
+
+
+def _fit(
+    image: NDArray[np.float32], sigma: NDArray[np.float32], spread: Spread, u: int, v: int
+) -> Detection | None:
+    """Maximum-likelihood centre and flux from the peak at (u, v); None if the fit runs away."""
+    r = spread.radius_px + 1
+    top, left = max(v - r, 0), max(u - r, 0)
+    patch = image[top : v + r + 1, left : u + r + 1].astype(float)
+    weight = 1.0 / sigma[top : v + r + 1, left : u + r + 1].astype(float) ** 2
+    columns, rows = left + np.arange(float(patch.shape[1])), top + np.arange(float(patch.shape[0]))
+    x, y = float(u), float(v)
+    for _ in range(_FIT_STEPS):
+        T = template(spread, columns - x, rows - y)
+        flux = float((weight * T[0] * patch).sum() / (weight * T[0] ** 2).sum())
+        if flux <= 0:
+            return None
+        J = np.stack([T[0].ravel(), -flux * T[1].ravel(), -flux * T[2].ravel()], axis=1)
+        F = J.T @ (J * weight.reshape(-1, 1))
+        step = np.linalg.solve(F, J.T @ (weight * (patch - flux * T[0])).ravel())
+        dx, dy = np.clip(step[1:], -_MAX_STEP_PX, _MAX_STEP_PX)
+        x, y = x + float(dx), y + float(dy)
+        if math.hypot(x - u, y - v) > _MAX_WANDER_PX:
+            return None
+        if max(abs(dx), abs(dy)) < _CONVERGED_PX:
+            break
+    covariance = np.linalg.inv(F)
+    centre = covariance[1:, 1:] + SIGMA_FLOOR_PX**2 * np.eye(2)
+    return Detection(np.array([x, y]), centre, flux, math.sqrt(covariance[0, 0]))
+
+
+def template(spread: Spread, columns_px: Array, rows_px: Array) -> Array:
+    """Shares of light and their slopes along u and v at offsets from the centre, (3, rows, columns)."""
+    pu, pv = spread.profile(columns_px), spread.profile(rows_px)
+    du, dv = spread.profile_slope(columns_px), spread.profile_slope(rows_px)
+    return np.stack([np.outer(pv, pu), np.outer(pv, du), np.outer(dv, pu)])

@@ -1,0 +1,105 @@
+"""Are the frames of a sequence comparable? Each is fitted by the mean frame, moved and re-exposed.
+
+A frame that shows the same scene under slightly other light, from a head that quivers a little, is
+    frame = mean - du * mean_u - dv * mean_v + gain * (mean - average) + offset + noise.
+The fit is taken out of the frame (it would leak background texture into the difference image) as long as
+it is small; a large one, or a large rest, means that the sequence does not show one scene.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.types import Array
+from perception.checks import as_finite
+
+Frames = NDArray[np.float32]
+
+_MARKER_NOISES = 12.0  # a pixel that changes by more is a marker's, not the background's
+_MIN_BACKGROUND = 0.5  # share of pixels that must be background for that to make sense
+
+
+@dataclass(frozen=True)
+class SimilarityLimits:
+    """How far a frame may be from the sequence's mean; the last two in multiples of the pixel noise."""
+
+    shift_px: float = 0.5
+    gain: float = 0.10
+    offset_noise: float = 12.0
+    rest_noise: float = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Similarity:
+    """Per frame: shift (n, 2) [px], gain (n,), offset and rest (n,) [counts]; frames freed of these.
+
+    `problem` says what makes the sequence unusable, empty if nothing does.
+    """
+
+    shift_px: Array
+    gain: Array
+    offset_counts: Array
+    rest_counts: Array
+    frames: Frames
+    problem: str
+
+
+def compare(
+    stack: NDArray[np.uint16], noise_counts: float, limits: SimilarityLimits | None = None
+) -> Similarity:
+    """Compare and equalise the frames of a stack (n >= 2, h >= 8, w >= 8) [counts]; ValueError otherwise."""
+    if stack.ndim != 3 or stack.shape[0] < 2 or min(stack.shape[1:]) < 8:
+        raise ValueError(f"stack: got shape {stack.shape}, expected (2 or more, 8 or more, 8 or more)")
+    as_finite("noise_counts", [noise_counts], (1,))
+    frames = stack.astype(np.float32)
+    mean = frames.mean(axis=0)
+    basis = _basis(mean)
+    flat = (frames - mean).reshape(len(frames), -1)
+    coefficients = _fit(basis, flat, _background(stack, noise_counts))
+    flat -= coefficients @ basis
+    limit = np.float32(_MARKER_NOISES * noise_counts)
+    rest = np.sqrt(np.mean(np.clip(flat, -limit, limit) ** 2, axis=1)).astype(np.float64)
+    fitted = coefficients.astype(np.float64)
+    shift, gain, offset = -fitted[:, :2], fitted[:, 2], fitted[:, 3]
+    problem = _problem(shift, gain, offset / noise_counts, rest / noise_counts, limits or SimilarityLimits())
+    flat += mean.reshape(1, -1)
+    return Similarity(shift, gain, offset, rest, flat.reshape(frames.shape), problem)
+
+
+def _basis(mean: Frames) -> Frames:
+    """What a frame is fitted with, as rows (4, h * w): gradient along u, along v, contrast, one."""
+    along_v, along_u = np.gradient(mean)
+    rows = (along_u, along_v, mean - mean.mean(), np.ones_like(mean))
+    return np.stack([row.ravel() for row in rows])
+
+
+def _background(stack: NDArray[np.uint16], noise_counts: float) -> NDArray[np.bool_]:
+    """Pixels (h * w,) that no marker lights up; all of them if the whole scene changes."""
+    steady: NDArray[np.bool_] = np.ptp(stack, axis=0).ravel() < _MARKER_NOISES * noise_counts
+    return steady if steady.mean() > _MIN_BACKGROUND else np.ones_like(steady)
+
+
+def _fit(basis: Frames, flat: Frames, pixels: NDArray[np.bool_]) -> Frames:
+    """Least-squares coefficients (n, 4) over `pixels`; a direction that the scene does not show stays 0."""
+    weighted = basis * pixels
+    gram = (weighted @ basis.T).astype(np.float64)
+    scale = np.sqrt(np.diag(gram)) + 1e-9
+    inverse = np.linalg.pinv(gram / np.outer(scale, scale), rcond=1e-6) / np.outer(scale, scale)
+    coefficients: Frames = ((flat @ weighted.T) @ inverse).astype(np.float32)
+    return coefficients
+
+
+def _problem(shift: Array, gain: Array, offset: Array, rest: Array, limits: SimilarityLimits) -> str:
+    checks = (
+        (np.linalg.norm(shift, axis=1), limits.shift_px, "px of shift"),
+        (np.abs(gain), limits.gain, "change of contrast"),
+        (np.abs(offset), limits.offset_noise, "noise levels of brightness change"),
+        (rest, limits.rest_noise, "noise levels of unexplained difference"),
+    )
+    worst = ((float(values.max()), limit, what) for values, limit, what in checks)
+    return "; ".join(
+        f"{value:.3g} {what} (at most {limit:g})" for value, limit, what in worst if value > limit
+    )
