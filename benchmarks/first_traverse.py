@@ -54,9 +54,7 @@ TOLERANCES_M = (0.030, 0.030, 0.025, 0.025)
 def within_tolerance(result: dict) -> bool:
     """Every way-point reached, within its tolerance by true position."""
     errors = result["truth"]["waypoint_errors_m"] or []
-    return len(errors) == len(TOLERANCES_M) and all(
-        e <= t for e, t in zip(errors, TOLERANCES_M, strict=True)
-    )
+    return len(errors) == len(TOLERANCES_M) and all(e <= t for e, t in zip(errors, TOLERANCES_M, strict=True))
 
 
 def main() -> None:

@@ -32,6 +32,7 @@ from executive.telemetry import events
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.result import RunFigures, summarise, write_result
 from executive.tree.build import build
+from executive.tree.load import load_tree
 from executive.types import PoseEstimate, Segment, Source
 
 TICK_S = 1.0
@@ -157,7 +158,9 @@ def _prepare(
         pool=Pool(strategies, journal.strategy),
         journal=journal,
     )
-    built = build(scenario.tree, services, {"route": route, **scenario.mission.tree_inputs})
+    inputs = {"route": route, **scenario.mission.tree_inputs}
+    remedies = {strategy.name: load_tree(strategy.tree) for strategy in strategies}
+    built = build(scenario.tree, services, inputs, remedies)
     journal.write(
         events.Start(
             scenario.name,

@@ -6,7 +6,7 @@ the quality asked and inverse to the remaining error; when the answer is risky o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -100,11 +100,17 @@ class Pool:
         self.attempts: list[Attempt] = []
         self._note = note
 
-    def choose(self, situation: Situation) -> Choice:
-        """The first-fitted strategy for this situation. The choice is noted, and an attempt opened."""
+    def choose(self, situation: Situation, at_hand: Container[str] | None = None) -> Choice:
+        """The first-fitted strategy for this situation, of those `at_hand` where the tree stands (None: all).
+
+        The choice is noted, and an attempt opened.
+        """
         anomaly, weight = situation.assessment.anomaly
         candidates = tuple(
-            sorted((self._rate(s, situation) for s in self.strategies.values()), key=lambda c: -c.fitness)
+            sorted(
+                (self._rate(s, situation, at_hand) for s in self.strategies.values()),
+                key=lambda c: -c.fitness,
+            )
         )
         fit = [c for c in candidates if c.refused is None]
         choice = Choice(
@@ -150,7 +156,9 @@ class Pool:
             f"answers {answered} and {situation.failure.reason}; cost {best.cost_s:.0f} s",
         )
 
-    def _rate(self, strategy: Strategy, situation: Situation) -> Candidate:
+    def _rate(self, strategy: Strategy, situation: Situation, at_hand: Container[str] | None) -> Candidate:
+        if at_hand is not None and strategy.name not in at_hand:
+            return Candidate(strategy.name, 0.0, "needs values that the tree here does not have")
         weights = situation.assessment.weights
         explained = sum(weights[h] * a for h, a in strategy.answers.items() if weights[h] >= LEAST_WEIGHT)
         fitness = explained + strategy.reasons.get(situation.failure.reason, 0.0)

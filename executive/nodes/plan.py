@@ -15,12 +15,10 @@ class BeginSegment(Leaf):
 
     segment = In[Segment](SEGMENT, "the segment that begins")
     pose = InOut[PoseEstimate](POSE, "the pose, its offset now from this segment")
-    target = Out[Point](POINT, "the end of the segment")
 
     def step(self) -> Outcome[object]:
         self.services.journal.segment(self.segment)
         self.pose = self.pose.on(self.segment)
-        self.target = self.segment.end
         return Outcome(Reason.DONE)
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Protocol
+from collections.abc import Callable, Iterator, Mapping
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -12,17 +11,11 @@ from py_trees.composites import Composite
 from executive.nodes.base import Trace
 from executive.types import Outcome, Reason
 
+Choose = Callable[[Outcome[object], frozenset[str]], str | None]
+"""Asks the pool: the failure and the strategies at hand here; the one to try, or None to call home."""
 
-class Chooser(Protocol):
-    """What `recover` asks of the pool."""
-
-    def choose(self, failure: Outcome[object]) -> str | None:
-        """The name of the strategy to try for this failure, or None when none is left."""
-        ...
-
-    def report(self, name: str, helped: bool) -> None:
-        """Whether the strategy chosen last made the failure go away."""
-        ...
+Conclude = Callable[[bool], None]
+"""Tells the pool whether the strategy chosen last helped."""
 
 
 class Recover(Composite):
@@ -37,13 +30,15 @@ class Recover(Composite):
         name: str,
         path: str,
         trace: Trace,
-        pool: Chooser,
+        choose: Choose,
+        conclude: Conclude,
         attempts: int,
         child: Behaviour,
         strategies: Mapping[str, Behaviour],
     ) -> None:
         super().__init__(name, [child, *strategies.values()])
-        self.path, self.trace, self.pool, self.attempts = path, trace, pool, attempts
+        self.path, self.trace, self.attempts = path, trace, attempts
+        self.choose, self.conclude = choose, conclude
         self.child, self.strategies = child, strategies
         self.begin()
 
@@ -85,7 +80,7 @@ class Recover(Composite):
         """Tell the pool what came of the strategy that ran before the child."""
         if self.unverified is not None:
             same = failure is not None and self.failure is not None and failure.reason is self.failure.reason
-            self.pool.report(self.unverified, not same)
+            self.conclude(not same)
             self.unverified = None
 
     def answer(self, failure: Outcome[object]) -> Status:
@@ -93,7 +88,7 @@ class Recover(Composite):
         self.failure = failure
         if self.tried >= self.attempts:
             return self.give_up(f"{self.attempts} attempts used up")
-        name = self.pool.choose(failure)
+        name = self.choose(failure, frozenset(self.strategies))
         if name is None:
             return self.give_up("no strategy fits")
         if name not in self.strategies:
@@ -125,7 +120,7 @@ class Recover(Composite):
         if status is Status.RUNNING:
             return Status.RUNNING
         if status is Status.FAILURE:
-            self.pool.report(self.strategy, False)
+            self.conclude(False)
             return self.answer(self.failure)
         self.unverified = self.strategy
         self.trace.last_failure = None

@@ -12,7 +12,7 @@ from py_trees.common import Status
 
 from executive.attributes import read_attribute
 from executive.errors import ConfigError
-from executive.nodes import LEAVES
+from executive.nodes import LEAVES, situation
 from executive.nodes.base import (
     REQUIRED,
     Binding,
@@ -26,10 +26,12 @@ from executive.nodes.base import (
     Trace,
 )
 from executive.nodes.decorators import ForEach, Guarded, Timeout
+from executive.nodes.loop import Loop
 from executive.nodes.recover import Recover
 from executive.nodes.services import Services
 from executive.tree.spec import Literal, NodeSpec, PortValue, TreeSpec, root_of, under
-from executive.values import ValueType
+from executive.types import Outcome
+from executive.values import SEGMENT, ValueType
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,9 @@ class Scope:
 
     def preset(self, port: PortSpec) -> None:
         """Give a port that nobody passed in its declared default."""
-        if port.direction is Direction.IN:
+        if isinstance(port.default, FromTree):
+            self.bound[port.name] = Constant(None)
+        elif port.direction is Direction.IN:
             self.bound[port.name] = Constant(port.default)
         elif port.default not in (None, REQUIRED):
             self.binding(port.name).write(port.default)
@@ -132,10 +136,19 @@ def _set_inputs(spec: TreeSpec, scope: Scope, inputs: Mapping[str, object]) -> N
             scope.binding(port.name).write(inputs[port.name])
         elif port.default is REQUIRED:
             problems.append(mark.problem(f"got no input {port.name!r} for the tree {spec.name!r}"))
-        elif port.default is not None:
+        elif port.default is not None and not isinstance(port.default, FromTree):
             scope.binding(port.name).write(port.default)
     if problems:
         raise ConfigError(problems)
+
+
+def _fits(strategy: TreeSpec, scope: Scope) -> bool:
+    """Whether the tree around has every value that the strategy's tree must be given."""
+    for port in strategy.ports:
+        known = scope.types.get(port.name)
+        if port.default is REQUIRED and (known is None or known.name != port.type.name):
+            return False
+    return True
 
 
 class _Builder:
@@ -166,6 +179,7 @@ class _Builder:
             "sequence": self.sequence,
             "selector": self.selector,
             "parallel": self.parallel,
+            "loop": self.loop,
             "timeout": self.timeout,
             "for_each": self.for_each,
             "recover": self.recover,
@@ -185,6 +199,8 @@ class _Builder:
         for port in tree.ports:
             if port.name in spec.ports:
                 inner.bound[port.name] = scope.of(spec.ports[port.name])
+            elif isinstance(port.default, FromTree):
+                inner.bound[port.name] = scope.default(port)
             else:
                 inner.preset(port)
         return self.instance(path, spec.name, tree, inner)
@@ -214,6 +230,10 @@ class _Builder:
         policies = {"all": common.ParallelPolicy.SuccessOnAll, "one": common.ParallelPolicy.SuccessOnOne}
         policy = policies[spec.literal("policy")]()
         return composites.Parallel(spec.name, policy, self.children(path, spec, scope, Status.SUCCESS))
+
+    def loop(self, path: str, spec: NodeSpec, scope: Scope) -> Behaviour:
+        until, do = self.children(path, spec, scope, Status.SUCCESS)
+        return Loop(spec.name, until, do)
 
     def decorator(self, path: str, spec: NodeSpec, scope: Scope) -> Behaviour:
         child = self.child(path, spec, scope)
@@ -248,11 +268,25 @@ class _Builder:
         child = self.child(path, spec, scope)
         self.recovering = True
         made = {
-            name: self.strategy(f"{path}/{name}", name, tree, scope) for name, tree in self.strategies.items()
+            name: self.strategy(f"{path}/{name}", name, tree, scope)
+            for name, tree in self.strategies.items()
+            if _fits(tree, scope)
         }
         self.recovering = False
         attempts = spec.literal("attempts")
-        return Recover(spec.name, path, self.trace, self.services.pool, attempts, child, made)
+        services, segment = self.services, self.segment(scope)
+
+        def choose(failure: Outcome[object], at_hand: frozenset[str]) -> str | None:
+            return situation.choose(services, segment.read(), failure, at_hand)
+
+        conclude = services.pool.conclude
+        return Recover(spec.name, path, self.trace, choose, conclude, attempts, child, made)
+
+    @staticmethod
+    def segment(scope: Scope) -> Binding:
+        """The segment under way, where the tree around has one."""
+        known = scope.types.get("segment")
+        return scope.binding("segment") if known is SEGMENT else Constant(None)
 
     def strategy(self, path: str, name: str, tree: TreeSpec, scope: Scope) -> Behaviour:
         inner = Scope(self.store, path, tree.values)
@@ -260,9 +294,6 @@ class _Builder:
             known = scope.types.get(port.name)
             if known is not None and known.name == port.type.name:
                 inner.bound[port.name] = scope.binding(port.name)
-            elif port.default is REQUIRED:
-                message = f"the strategy {name!r} needs {{{port.name}}} ({port.type.name}) in the tree around"
-                raise ConfigError([tree.root.mark.problem(message)])
             else:
                 inner.preset(port)
         made = self.instance(path, name, tree, inner)

@@ -13,7 +13,7 @@ from executive.values import DURATION, FLAG, INTEGER, ROUTE, SEGMENT, TEXT, Valu
 
 @dataclass(frozen=True)
 class NodeType:
-    """A type of node. `children` is none, one or many; `fixed` ports take literals only.
+    """A type of node. `children` is none, one, two or many; `fixed` ports take literals only.
 
     `choices` lists the words that a text port takes.
     """
@@ -65,6 +65,13 @@ BUILTINS: dict[str, NodeType] = {
             "many",
             frozenset({"policy"}),
             {"policy": ("all", "one")},
+        ),
+        NodeType(
+            "loop",
+            "control",
+            "Ask the first child; until it succeeds, run the second and ask again. Fails when the second does.",
+            (),
+            "two",
         ),
         NodeType("inverter", "decorator", "Success for failure, and failure for success.", (), "one"),
         NodeType(

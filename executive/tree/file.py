@@ -9,7 +9,7 @@ from pydantic import Field
 from executive.config.source import Source
 from executive.config.validate import Problems, Strict, guess, listed
 from executive.errors import ConfigError
-from executive.nodes.base import REQUIRED, Direction, PortSpec
+from executive.nodes.base import REQUIRED, Direction, FromTree, PortSpec
 from executive.tree.literals import literal
 from executive.values import VALUE_TYPES
 
@@ -50,6 +50,8 @@ def _port(source: Source, name: str, declared: PortDeclaration) -> PortSpec:
         raise ConfigError([source.at((*place, "type")).problem(message + guess(declared.type, known))])
     kind = VALUE_TYPES[declared.type]
     default: object = REQUIRED if declared.direction == "in" else None
-    if declared.default is not None:
+    if declared.default == f"{{{name}}}":
+        default = FromTree(name)
+    elif declared.default is not None:
         default = literal(source, (*place, "default"), kind)
     return PortSpec(name, kind, Direction(declared.direction), declared.doc, default)

@@ -23,7 +23,7 @@ from executive.tree.spec import GUARDS, Literal, NodeSpec, PortValue, Reference,
 
 MAX_SIZE = 5000
 BESIDE = ("name", *GUARDS)
-CHILD_KEYS = {"none": (), "one": ("child",), "many": ("children",)}
+CHILD_KEYS = {"none": (), "one": ("child",), "two": ("children",), "many": ("children",)}
 
 
 def load_tree(reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
@@ -171,7 +171,7 @@ class _TreeReader:
         kind = self.trees.types.get(word)
         if data is None or (isinstance(data, str) and data == word):
             return {}
-        if kind is not None and kind.children == "many" and isinstance(data, list):
+        if kind is not None and kind.children in ("two", "many") and isinstance(data, list):
             return {"children": data}
         if isinstance(data, dict):
             return data
@@ -257,6 +257,9 @@ class _TreeReader:
             message = f"got {shown_data(listing)} as children of {kind.name}, expected a list of nodes"
             local.add(self.source.at(base).problem(message))
             return []
+        if kind.children == "two" and len(listing) != 2:
+            message = f"got {len(listing)} children of {kind.name}, expected two: the question and the deed"
+            local.add(self.source.at(base).problem(message))
         return [child for index in range(len(listing)) if (child := self.node((*base, index)))]
 
     def _check_item(

@@ -18,7 +18,9 @@ GAUGE_M = 0.125
 NOISE = MotionNoise()
 
 
-def pose(x: float, y: float, heading: float, sigma_m: float = 0.001, sigma_rad: float = 0.002) -> PoseEstimate:
+def pose(
+    x: float, y: float, heading: float, sigma_m: float = 0.001, sigma_rad: float = 0.002
+) -> PoseEstimate:
     return PoseEstimate(
         time_s=0.0,
         position_site_m=(x, y, 0.0),

@@ -1,0 +1,25 @@
+"""What the pool is asked with: the present situation, gathered from the services."""
+
+from __future__ import annotations
+
+from executive.nodes.services import Services
+from executive.pool import Situation
+from executive.types import Outcome, Segment
+
+
+def choose(
+    services: Services, segment: Segment | None, failure: Outcome[object], at_hand: frozenset[str]
+) -> str | None:
+    """The strategy that the pool chooses among those at hand, None to call home. The rover rests meanwhile."""
+    services.devices.tracks.stop()
+    pose = services.classification.predicted()
+    situation = Situation(
+        time_s=services.clock.now_s,
+        failure=failure,
+        assessment=services.classification.assess(pose, segment),
+        pose=pose,
+        segment=segment,
+        cabin=services.devices.cabin.read(),
+    )
+    services.journal.assessment(situation.assessment)
+    return services.pool.choose(situation, at_hand).strategy
