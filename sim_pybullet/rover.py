@@ -164,13 +164,23 @@ class RoverBody:
         )
         return -arm_joint, -arm_joint - cabin_joint
 
-    def belt_forces(self) -> tuple[float, float]:
-        """Force of each belt motor along x, positive where it pushes the rover forward [N]."""
-        states = pybullet.getJointStates(
-            self.id, [first + BELT for first in TRACK_JOINTS], physicsClientId=self.client
+    def traction(self) -> tuple[float, float]:
+        """What each belt pulls with: the friction on its shoe along the body's x, in the last step [N].
+
+        Not the joint's force: a rock in front of a shoe would load that, but stands against the housing.
+        """
+        ahead = self.pose()[1][:, 0].tolist()
+        left, right = (self._friction_along(ahead, shoe) for shoe in SHOES)
+        return left, right
+
+    def _friction_along(self, axis_site: list[float], link: int) -> float:
+        contacts = pybullet.getContactPoints(bodyA=self.id, linkIndexA=link, physicsClientId=self.client)
+        along = (
+            c[10] * sum(a * b for a, b in zip(axis_site, c[11], strict=True))
+            + c[12] * sum(a * b for a, b in zip(axis_site, c[13], strict=True))
+            for c in contacts
         )
-        # The motor pushes the shoe backwards to move the chassis forwards.
-        return -float(states[0][3]), -float(states[1][3])
+        return float(sum(along))
 
     def pose(self) -> tuple[Array, Array]:
         """Position (3,) and rotation (3, 3) of `body` in `site`."""

@@ -17,9 +17,10 @@ ENCODER_STEP_M = 0.0001
 IDLE_CURRENT_A = 0.045
 CURRENT_PER_N = 0.030
 CURRENT_SIGMA_A = 0.002
-# Above what a 30 degree slope needs (0.25 of the weight per track), below what a firm block takes before
-# the tracks slide (0.4 of the weight). The motors are geared for the weight they carry.
-LIMIT_PER_WEIGHT = 0.29
+# The motors are geared for the weight they carry. A slope of 30 degrees takes 0.25 of it per track; against a
+# rock a track slides on its soil only at 0.3 to 0.4. One motor alone may draw more than both together.
+LIMIT_PER_WEIGHT_BOTH = 0.29
+LIMIT_PER_WEIGHT_ONE = 0.36
 LIMIT_LASTS_S = 8.0  # a step or a stone is overcome sooner
 GAIN_SIGMA = 0.004  # belts differ in length and tension: the systematic error called track synchronism
 
@@ -40,7 +41,7 @@ class SimTracks:
         self, rover: RoverCalibration, weight_n: float, clock: Clock, rng: np.random.Generator
     ) -> None:
         self._rover, self._clock, self._rng = rover, clock, rng
-        self._limit_n = LIMIT_PER_WEIGHT * weight_n
+        self._weight_n = weight_n
         self.gains = (1.0 + GAIN_SIGMA * rng.standard_normal(), 1.0 + GAIN_SIGMA * rng.standard_normal())
         self.speed_factors = [1.0, 1.0]  # a weak motor turns less than commanded; its encoder sees that
         self._turned_m = [0.0, 0.0]
@@ -97,12 +98,19 @@ class SimTracks:
         if self._drive is None:
             return
         self._forces_n = (abs(forces_n[0]), abs(forces_n[1]))
-        over = max(self._forces_n) > self._limit_n
-        self._over_s = self._over_s + tick_s if over else max(0.0, self._over_s - tick_s)
+        self._over_s = self._over_s + tick_s if self._overcurrent else max(0.0, self._over_s - tick_s)
         if self._over_s >= LIMIT_LASTS_S:
             self._finish(Reason.BLOCKED, "motor current over its limit")
         elif abs(self._drive.left_m) < 1e-9 and abs(self._drive.right_m) < 1e-9:
             self._finish(Reason.DONE)
+
+    @property
+    def _overcurrent(self) -> bool:
+        left_n, right_n = self._forces_n
+        return (
+            max(left_n, right_n) > LIMIT_PER_WEIGHT_ONE * self._weight_n
+            or (left_n + right_n) / 2 > LIMIT_PER_WEIGHT_BOTH * self._weight_n
+        )
 
     def _finish(self, reason: Reason, detail: str = "") -> None:
         drive, self._drive = self._drive, None

@@ -120,7 +120,7 @@ class World:
         self._write_truth(force=moving)
 
     def _move(self, belts_m: tuple[float, float], tick_s: float) -> tuple[float, float]:
-        """One tick of physics; the mean belt forces in it [N]."""
+        """One tick of physics; what the belts pull with at its end [N]."""
         self._frames = None
         moved = self._displacement(belts_m)
         if belts_m != (0.0, 0.0) or self.cabin.moving:
@@ -130,9 +130,9 @@ class World:
         motions = _shoe_motions(moved, count * STEP_S, self.rig.rover.track_gauge_m)
         self.body.hold_cabin(*self.cabin.targets_rad)
         self._pull = self.tether.pull(self._anchor())
-        forces = [self._step(motions) for _ in range(count)]
-        left_n, right_n = np.mean(forces, axis=0)
-        return float(left_n), float(right_n)
+        for _ in range(count):
+            self._step(motions)
+        return self.body.traction()
 
     def _displacement(self, belts_m: tuple[float, float]) -> Displacement:
         """What the soil makes of the belts' travel, at the place and attitude where the rover is now."""
@@ -159,7 +159,7 @@ class World:
         soil = self.soils.at(x, y)
         return TrackGround(soil, self.soils.slip_scatter(soil, x, y), self._contact_m)
 
-    def _step(self, motions: tuple[TrackMotion, TrackMotion]) -> tuple[float, float]:
+    def _step(self, motions: tuple[TrackMotion, TrackMotion]) -> None:
         self.body.command(motions, STEP_S)
         if self._pull.any():
             x, y, z = self._pull
@@ -167,7 +167,6 @@ class World:
         pybullet.stepSimulation(physicsClientId=self._client)
         self.steps += 1
         self._doze()
-        return self.body.belt_forces()
 
     def _doze(self) -> None:
         """Fall asleep after some calm steps, or where a contact keeps trembling for very long."""

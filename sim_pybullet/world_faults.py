@@ -1,4 +1,4 @@
-"""The handle through which faults act on the world itself. Each change takes effect at once and can be undone."""
+"""The handle through which faults act on the world itself; each change takes effect at once."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sim_pybullet.world import World
 
 
 class WorldFaults:
-    """Alters a world; no port of the executive leads here. Markers count from 0, sides are 0 left, 1 right."""
+    """Alters a world; no port leads here. Markers count from 0, sides are 0 left and 1 right."""
 
     def __init__(self, world: World) -> None:
         self._world = world
