@@ -108,6 +108,9 @@ class World:
         """Let one tick pass: motors, physics, clock, and what that ends."""
         tick_s = self.clock.tick_s
         moving = self.tracks.moving or self.cabin.moving
+        awake = moving or not self._asleep
+        if awake and self.clock.now_s > self._last_truth_s:
+            self._write_truth(force=True)  # the last moment at rest, so that nobody interpolates across it
         self.head.advance(tick_s)
         self.cabin.advance(tick_s)
         forces_n = (0.0, 0.0)
@@ -117,7 +120,7 @@ class World:
         self.tracks.feel(forces_n, tick_s)
         self.cabin.settle()
         self.head.settle()
-        self._write_truth(force=moving)
+        self._write_truth(force=awake)
 
     def _move(self, belts_m: tuple[float, float], tick_s: float) -> tuple[float, float]:
         """One tick of physics; what the belts pull with at its end [N]."""
