@@ -93,7 +93,7 @@ NOMINAL: Signature = {
     Channel.TURN_RATIO: Normal(1.0, 0.08),
     Channel.HEADING_Z: Normal(0.0, 1.2),
     Channel.CROSS_Z: Normal(0.0, 1.2),
-    Channel.CURRENT_RATIO: Normal(1.0, 0.25),
+    Channel.CURRENT_RATIO: Normal(1.0, 0.4),
     Channel.TILT: Normal(0.1, 0.12),
     Channel.TETHER: Normal(0.5, 1.0),
     Channel.MARKERS: Among(_FOUR, 0.95, 0.05),
@@ -104,7 +104,7 @@ SIGNATURES: Mapping[Hypothesis, Signature] = {
     Hypothesis.NOMINAL: NOMINAL,
     Hypothesis.SLIP_LONGITUDINAL: {
         Channel.ADVANCE_RATIO: Normal(0.55, 0.25),
-        Channel.CURRENT_RATIO: Normal(1.2, 0.4),
+        
     },
     Hypothesis.SLIP_TURNING: {Channel.TURN_RATIO: Normal(0.7, 0.5)},
     Hypothesis.TRACK_ASYMMETRY: {Channel.HEADING_Z: Normal(0.0, 6.0)},

@@ -125,18 +125,19 @@ class RoverBody:
         )
 
     def _rebase(self, side: int) -> None:
-        """Put the shoe back under the chassis where it has gone too far, keeping each joint's lag."""
+        """Put the shoe back under the chassis where it has gone too far, keeping the lag along x and y."""
         setpoint = self._setpoints[side]
         first = TRACK_JOINTS[side]
-        if abs(setpoint.yaw_rad) >= REBASE_RAD:
-            self._shift_joint(first + YAW, setpoint.yaw_rad)
-            setpoint.yaw_rad = 0.0
         if abs(setpoint.side_m) >= REBASE_M:
             self._shift_joint(first + SIDE, setpoint.side_m)
             setpoint.side_m = 0.0
         if abs(setpoint.belt_m) >= REBASE_M:
             self._shift_joint(first + BELT, setpoint.belt_m)
             setpoint.belt_m = 0.0
+        angle = pybullet.getJointState(self.id, first + YAW, physicsClientId=self.client)[0]
+        if abs(angle) >= REBASE_RAD:
+            self._shift_joint(first + YAW, angle)
+            setpoint.yaw_rad = 0.0
 
     def _shift_joint(self, joint: int, by: float) -> None:
         position, velocity = pybullet.getJointState(self.id, joint, physicsClientId=self.client)[:2]
