@@ -1,0 +1,219 @@
+"""The `longarm` command. Thin: it parses arguments, calls, prints, and turns errors into exit codes.
+
+0 good, 1 ended otherwise or problems found, 2 bad input or usage, 3 a defect.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import click
+
+from executive.errors import LongarmError
+
+NOT_YET = ("test", "campaign", "import", "explain", "replay", "minimise")
+DEFECT = 3
+
+
+def main() -> None:
+    """Entry point: everything that goes wrong ends in an exit code and words, never in a bare traceback."""
+    sys.exit(invoke(sys.argv[1:]))
+
+
+def invoke(arguments: list[str]) -> int:
+    """Run the command line; the exit code."""
+    try:
+        code = cli.main(args=arguments, prog_name="longarm", standalone_mode=False)
+    except click.exceptions.Exit as error:
+        return error.exit_code
+    except click.exceptions.Abort:
+        return 2
+    except click.ClickException as error:
+        error.show()
+        return 2
+    except LongarmError as error:
+        click.echo(str(error), err=True)
+        return 2
+    except Exception as error:  # a defect: one line, the run folder has the traceback
+        place = _deepest(error)
+        words = " ".join(str(error).split())
+        click.echo(f"longarm: a defect: {type(error).__name__}: {words} ({place})", err=True)
+        return DEFECT
+    return code if isinstance(code, int) else 0
+
+
+def _deepest(error: BaseException) -> str:
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    if trace is None:
+        return "no traceback"
+    return f"{Path(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno}"
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+def cli() -> None:
+    """Longarm: a rover led by its lander's stereo head, run by a behaviour tree.
+
+    Example: longarm run missions/first_traverse.yaml
+    """
+
+
+FILE = click.Path(path_type=Path)
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@click.option("--seed", type=click.IntRange(0), help="Replace the scenario's seed.")
+@click.option("--out", type=FILE, help="Where to write the run folder.")
+@click.option(
+    "--tier", type=click.Choice(["full", "geometric"]), help="Images, or their measured error model."
+)
+@click.option(
+    "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Replace one value of the scenario."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print result.json and nothing else.")
+@click.option("--quiet", is_flag=True, help="Print nothing.")
+def run(
+    file: Path,
+    seed: int | None,
+    out: Path | None,
+    tier: str | None,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    quiet: bool,
+) -> int:
+    """Run a scenario or a mission file and write its run folder.
+
+    Example: longarm run missions/first_traverse.yaml --seed 3 --set "world.light.sun_elevation=20 deg"
+    """
+    from executive import app
+
+    return int(
+        app.run(file, seed=seed, out=out, tier=tier, overrides=overrides, as_json=as_json, quiet=quiet)
+    )
+
+
+@cli.command()
+@click.argument("run_dir", type=FILE)
+def report(run_dir: Path) -> int:
+    """Write the self-contained report.html of a run folder anew, from its record.
+
+    Example: longarm report runs/first_traverse-7
+    """
+    from executive import app
+
+    return int(app.report(run_dir))
+
+
+@cli.command()
+@click.argument("files", nargs=-1, required=True, type=FILE)
+@click.option("--format", "form", type=click.Choice(["text", "json", "sarif"]), default="text")
+@click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
+def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
+    """Analyse trees, missions and scenarios without running them; print every problem.
+
+    Example: longarm check trees/*.yaml missions/*.yaml --format sarif
+    """
+    from executive import check as checking
+
+    missing = [file for file in files if not file.is_file()]
+    for file in missing:
+        click.echo(
+            f"{file}:1:1: {'got a folder, expected a file' if file.is_dir() else 'no such file'}", err=True
+        )
+    if missing:
+        return 2
+    problems = sorted({problem for file in files for problem in checking.check_file(file)})
+    click.echo(checking.WRITERS["json" if as_json else form](problems), nl=False)
+    return 1 if problems else 0
+
+
+@cli.command()
+@click.argument("tree")
+@click.option("--format", "form", default="unicode", show_default=True, help="How to draw.")
+@click.option("-o", "--output", type=FILE, help="Write to this file instead of stdout.")
+def show(tree: str, form: str, output: Path | None) -> int:
+    """Draw a tree, by name or path: unicode, dot, svg, png, mermaid, html or groot.
+
+    Example: longarm show navigate --format svg -o navigate.svg
+    """
+    from executive.config.validate import guess, listed
+    from executive.show import FORMATS, draw
+    from executive.tree.load import load_tree
+
+    if form not in FORMATS:
+        raise click.UsageError(f'got "{form}", expected {listed(FORMATS)}{guess(form, FORMATS)}')
+    path = Path(tree)
+    drawing = draw(load_tree(path if path.is_file() or "/" in tree else tree), form)
+    content = drawing if isinstance(drawing, bytes) else drawing.encode()
+    if output is not None:
+        output.write_bytes(content)
+    else:
+        click.get_binary_stream("stdout").write(content)
+    return 0
+
+
+def _catalogue(kind: str, example: str) -> None:
+    @cli.command(kind, help=f"List the {kind}, or one of them in full.\n\nExample: longarm {kind} {example}")
+    @click.argument("name", required=False)
+    @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+    def command(name: str | None, as_json: bool) -> int:
+        from executive import listing
+        from executive.config.validate import guess, listed
+
+        entries = listing.entries(kind)
+        if name is not None and name not in entries:
+            known = sorted(entries)
+            raise click.UsageError(f'got "{name}", expected {listed(known) or "nothing"}{guess(name, known)}')
+        chosen = entries if name is None else {name: entries[name]}
+        if as_json:
+            click.echo(json.dumps(chosen, indent=2, ensure_ascii=False))
+        elif name is not None:
+            click.echo(listing.as_text(name, chosen[name]), nl=False)
+        else:
+            width = max((len(entry) for entry in chosen), default=0)
+            for entry, told in chosen.items():
+                click.echo(f"{entry:{width}}  {told.get('doc', '')}")
+        return 0
+
+
+for _kind, _example in (
+    ("nodes", "wait"),
+    ("strategies", "back_off"),
+    ("faults", "led_off"),
+    ("backends", "pybullet --json"),
+):
+    _catalogue(_kind, _example)
+
+
+@cli.command()
+@click.argument("kind", type=click.Choice(["tree", "mission", "scenario", "campaign"]))
+def schema(kind: str) -> int:
+    """Print the JSON Schema of a kind of file, for editors.
+
+    Example: longarm schema tree > tree.schema.json
+    """
+    from executive import schema as schemas
+
+    if kind not in schemas.KINDS:
+        raise click.UsageError(f"the schema of a {kind} is not there yet")
+    click.echo(json.dumps(schemas.schema(kind), indent=2, ensure_ascii=False))
+    return 0
+
+
+def _not_yet(name: str) -> None:
+    settings = {"ignore_unknown_options": True}
+
+    @cli.command(
+        name, help=f"Not yet available.\n\nExample: longarm {name} --help", context_settings=settings
+    )
+    @click.argument("arguments", nargs=-1, type=click.UNPROCESSED)
+    def command(arguments: tuple[str, ...]) -> int:
+        raise click.UsageError(f"longarm {name} is not there yet")
+
+
+for _name in NOT_YET:
+    _not_yet(_name)
