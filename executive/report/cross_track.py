@@ -43,8 +43,8 @@ def cross_track_figure(run: Run) -> Figure | None:
     beyond = f" The off-track margin, ±{widest:.0f} mm, lies outside." if widest > limit else ""
     caption = (
         "How far the rover was to the left (+) or right (−) of the line it was meant to follow. Within the "
-        "green band it drives straight on; in the amber band it corrects; beyond, it must stop. Orange: what each "
-        f"localisation found, with ±2σ.{beyond} Vertical lines separate the segments."
+        "green band it drives straight on; in the amber band it corrects; beyond, it must stop. Orange: what "
+        f"each localisation found, with ±2σ.{beyond} Vertical lines separate the segments."
     )
     return Figure("cross", "Cross-track error", legend(_legend(run)) + drawn, caption)
 

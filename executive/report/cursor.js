@@ -2,7 +2,7 @@
 (() => {
   const places = JSON.parse(document.getElementById("places").textContent);
   const charts = [...document.querySelectorAll("svg.timed")];
-  const map = document.getElementById("map"), here = document.getElementById("here");
+  const map = document.getElementById("site-map"), here = document.getElementById("here");
   const NS = "http://www.w3.org/2000/svg";
   for (const chart of charts) {
     const line = document.createElementNS(NS, "line");

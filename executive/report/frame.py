@@ -72,7 +72,8 @@ def ellipse(x_m: float, y_m: float, covariance: Array, sigmas: float) -> Array:
     values, vectors = np.linalg.eigh(covariance)
     angle = np.linspace(0, 2 * np.pi, 37)
     circle = np.array([np.cos(angle), np.sin(angle)])
-    return np.asarray(((vectors * np.sqrt(np.maximum(values, 0)) * sigmas) @ circle).T + [x_m, y_m])
+    axes = vectors * np.sqrt(np.maximum(values, 0.0)) * sigmas
+    return np.asarray((axes @ circle).T + np.array([x_m, y_m]))
 
 
 def outline(x_m: float, y_m: float, heading_rad: float, length_m: float, width_m: float) -> list[Vec2]:

@@ -57,7 +57,7 @@ def overview(run: Run) -> Figure | None:
         _WIDTH,
         frame.height_px + _BOTTOM + 4,
         body,
-        id="map",
+        id="site-map",
         data_px=frame.px_per_m,
         data_x0=frame.x(0),
         data_y0=frame.y(0),

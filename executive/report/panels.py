@@ -73,8 +73,9 @@ def telemetry(run: Run) -> Figure | None:
     cards = "".join(_panel(run, title, series) for title, series in panels if series)
     caption = (
         "What the rover, the head and the tether reported, one sample a tick. The slip estimate compares, "
-        "from one localisation to the next, the distance covered with what the belts travelled; it is 0 where the "
-        "tracks grip and 1 where they spin in place. Stretches with less than 20 mm of travel are left out."
+        "from one localisation to the next, the distance covered with what the belts travelled; it is 0 "
+        "where the tracks grip and 1 where they spin in place. Stretches with less than 20 mm of travel "
+        "are left out."
     )
     return Figure("telemetry", "Telemetry", f"<div class='panels'>{cards}</div>", caption)
 

@@ -41,8 +41,8 @@ def views(run: Run) -> Figure | None:
     ]
     caption = (
         f"{len(chosen)} of the {len(found)} localisations with pictures, left and right camera side by side, "
-        "contrast stretched and cut to the neighbourhood of the read-out window. A circle is a marker found in "
-        "the difference images, a blue dot where the estimated pose would put it: the two should meet."
+        "contrast stretched and cut to the neighbourhood of the read-out window. A circle is a marker found "
+        "in the difference images, a blue dot where the estimated pose would put it: the two should meet."
     )
     return Figure(
         "views", "Through the cameras", legend(entries) + f"<div class='views'>{pairs}</div>", caption
