@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.types import Array
-from sim_pybullet.sunlight import SKYLIGHT
+from sim_pybullet.sunlight import SKYLIGHT, Sun
 
 Image = NDArray[np.float32]
 
@@ -46,11 +46,11 @@ class _Layer:
 class GroundTexture:
     """Relative radiance of the ground (mean 1) at any place, for one sun."""
 
-    def __init__(self, sun_elevation_rad: float, sun_azimuth_rad: float, rng: np.random.Generator) -> None:
+    def __init__(self, sun: Sun, rng: np.random.Generator) -> None:
         self._layers = []
         for texel_m, contrast, bumps in _LAYERS:
             turn_rad = float(rng.uniform(0.1, 2 * math.pi))
-            tile = _lit_tile(rng, sun_elevation_rad, sun_azimuth_rad - turn_rad, bumps, contrast)
+            tile = _lit_tile(rng, math.tan(sun.height_rad), sun.azimuth_rad - turn_rad, bumps, contrast)
             self._layers.append(_Layer(texel_m, turn_rad, tile))
 
     def at(self, x_m: Image, y_m: Image, across_m: Image, along_m: Image) -> Image:
@@ -70,7 +70,7 @@ class GroundTexture:
 
 
 def _lit_tile(
-    rng: np.random.Generator, elevation_rad: float, azimuth_rad: float, bumps: int, contrast: float
+    rng: np.random.Generator, tangent: float, azimuth_rad: float, bumps: int, contrast: float
 ) -> Image:
     """A tile of lit relief and albedo, zero mean, standard deviation `contrast`."""
     height = _band_noise(rng) * (0.25 if bumps else 0.5)
@@ -78,20 +78,20 @@ def _lit_tile(
     slope_y = (np.roll(height, -1, 0) - np.roll(height, 1, 0)) / 2
     slope_x = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / 2
     toward_sun = slope_x * math.cos(azimuth_rad) + slope_y * math.sin(azimuth_rad)
-    facing = np.clip(1 - toward_sun / math.tan(elevation_rad), 0, 2.2) / np.sqrt(1 + slope_x**2 + slope_y**2)
-    lit = SKYLIGHT + (1 - SKYLIGHT) * facing * _sunlit(height, elevation_rad, azimuth_rad)
+    facing = np.clip(1 - toward_sun / tangent, 0, 2.2) / np.sqrt(1 + slope_x**2 + slope_y**2)
+    lit = SKYLIGHT + (1 - SKYLIGHT) * facing * _sunlit(height, tangent, azimuth_rad)
     tile = lit / lit.std() + 0.6 * _band_noise(rng)
     tile = (tile - tile.mean()) / tile.std() * contrast
     return np.asarray(np.clip(tile, _DARKEST, _BRIGHTEST), dtype=np.float32)
 
 
-def _sunlit(height: Array, elevation_rad: float, azimuth_rad: float) -> Array:
+def _sunlit(height: Array, tangent: float, azimuth_rad: float) -> Array:
     """0 where the tile's own relief keeps the sun off, 1 elsewhere."""
     lit = np.ones_like(height)
     for step in range(1, 14):
         shift = (-round(step * math.sin(azimuth_rad)), -round(step * math.cos(azimuth_rad)))
         rise = np.roll(height, shift, (0, 1)) - height
-        lit = np.minimum(lit, np.clip(0.5 + 2 * (step * math.tan(elevation_rad) - rise), 0, 1))
+        lit = np.minimum(lit, np.clip(0.5 + 2 * (step * tangent - rise), 0, 1))
     return np.asarray(lit)
 
 

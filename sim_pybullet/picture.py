@@ -68,6 +68,10 @@ class Picture:
                 add_spot(image, spot, window)
         return image
 
+    def forget(self) -> None:
+        """Drop the kept ground, as after a change of the world."""
+        self._kept.clear()
+
     def _ground_of(self, scene: SceneState, camera: int, view: View, window: Window) -> tuple[Image, Image]:
         key = (scene.head_pan_rad, scene.head_tilt_rad, camera, window, scene.rocks)
         if key not in self._kept:

@@ -50,7 +50,7 @@ class TerrainRenderer:
     def __init__(self, terrain: Terrain, sun: Sun, rng: np.random.Generator) -> None:
         self.field = HeightField(terrain)
         self.sun = sun
-        self._texture = GroundTexture(sun.elevation_rad, sun.azimuth_rad, rng)
+        self._texture = GroundTexture(sun, rng)
         self._light = ground_light(terrain, sun)
         self._origin, self._cell_m = terrain.origin_site_m, terrain.cell_m
 

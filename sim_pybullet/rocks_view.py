@@ -87,7 +87,7 @@ def shade_by_rocks(
     toward = sun.direction_site
     for rock in rocks:
         centre = np.asarray(rock.centre_site_m)
-        tip = centre - toward * (2 * rock.radius_m / math.sin(sun.elevation_rad))
+        tip = centre - toward * (2 * rock.radius_m / math.sin(sun.height_rad))
         area = pixel_area(np.stack([centre, tip]), 1.1 * rock.radius_m, view, window)
         if area is None:
             continue

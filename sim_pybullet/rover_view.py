@@ -22,6 +22,7 @@ Image = NDArray[np.float32]
 _SHIFT = 6  # fractional bits of polygon corners
 _SHADOW_OVERSAMPLING = 2
 _TOUCHING_M = 0.002
+_LEAST_SINE = 0.03  # of the sun's height over the ground
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,8 @@ class RoverRenderer:
         normal = self._ground_normal(foot)
         ground = np.array([foot[0], foot[1], self._height(foot[0], foot[1])])
         toward = self._sun.direction_site
-        along = ((vertices - ground) @ normal) / (toward @ normal)
+        # Ground that leans away from the sun is dark of itself: a bounded shadow does for it.
+        along = ((vertices - ground) @ normal) / max(float(toward @ normal), _LEAST_SINE)
         return np.asarray(vertices - np.maximum(along, 0)[:, None] * toward)
 
     def _ground_normal(self, foot: Array, arm_m: float = 0.2) -> Array:

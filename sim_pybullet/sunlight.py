@@ -13,6 +13,7 @@ from executive.types import Array
 from sim_pybullet.terrain import Terrain
 
 SKYLIGHT = 0.22  # share of the light on level ground that comes from the sky, not the sun
+_LOWEST_RAD = math.radians(3.0)
 _PENUMBRA = 0.012  # softness of shadows, as a difference of tangents: sun's disc and scattering
 
 
@@ -24,14 +25,19 @@ class Sun:
     azimuth_rad: float = math.radians(60.0)
 
     @property
+    def height_rad(self) -> float:
+        """Elevation, not below that of a sun so low that no exposure would be set for it."""
+        return max(self.elevation_rad, _LOWEST_RAD)
+
+    @property
     def direction_site(self) -> Array:
         """Unit vector towards the sun."""
-        level = math.cos(self.elevation_rad)
+        level = math.cos(self.height_rad)
         return np.array(
             [
                 level * math.cos(self.azimuth_rad),
                 level * math.sin(self.azimuth_rad),
-                math.sin(self.elevation_rad),
+                math.sin(self.height_rad),
             ]
         )
 
@@ -42,7 +48,7 @@ class Sun:
         """
         cosine = np.maximum(np.asarray(normals) @ self.direction_site, 0.0)
         sky = SKYLIGHT * (1 + np.asarray(normals)[..., 2]) / 2
-        return np.asarray((1 - SKYLIGHT) * lit * cosine / math.sin(self.elevation_rad) + sky)
+        return np.asarray((1 - SKYLIGHT) * lit * cosine / math.sin(self.height_rad) + sky)
 
 
 def ground_light(terrain: Terrain, sun: Sun) -> NDArray[np.float32]:
@@ -56,8 +62,8 @@ def ground_light(terrain: Terrain, sun: Sun) -> NDArray[np.float32]:
 def sunlit_share(terrain: Terrain, sun: Sun) -> NDArray[np.float32]:
     """0 in the ground's own cast shadow, 1 in the sun, by marching from every cell towards the sun."""
     height = np.asarray(terrain.elevation_m, dtype=np.float32)
-    tangent = math.tan(sun.elevation_rad)
-    farthest_m = float(np.ptp(height)) / max(tangent, 1e-3)
+    tangent = math.tan(sun.height_rad)
+    farthest_m = float(np.ptp(height)) / tangent
     margin = np.full_like(height, np.inf)
     distance_m = terrain.cell_m
     while distance_m < farthest_m:
@@ -73,6 +79,6 @@ def sunlit_share(terrain: Terrain, sun: Sun) -> NDArray[np.float32]:
             flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
             borderMode=cv2.BORDER_REPLICATE,
         )
-        np.minimum(margin, tangent - (ahead - height) / np.float32(distance_m), out=margin)
+        np.minimum(margin, np.float32(tangent) - (ahead - height) / np.float32(distance_m), out=margin)
         distance_m += max(terrain.cell_m, 0.04 * distance_m)
     return np.asarray(np.clip(0.5 + margin / (2 * _PENUMBRA), 0, 1), dtype=np.float32)

@@ -197,3 +197,13 @@ def test_same_generator_state_gives_the_same_ground():
 
 def test_shadows_turn_with_the_sun():
     assert about_z(0.3) @ Sun(0.6, 0.2).direction_site == pytest.approx(Sun(0.6, 0.5).direction_site)
+
+
+@pytest.mark.parametrize("elevation_deg", [0.0, 5.0, 90.0])
+def test_any_sun_over_the_horizon_makes_a_picture(elevation_deg):
+    sun = Sun(math.radians(elevation_deg), 1.0)
+    scene = with_rock(scene_at(flat_ground(), 3.0, 0.0), np.array([2.9, 0.2, 0.0]), 0.05)
+    image = picture(flat_ground(), sun=sun).unlit_e(scene, 0, Window(400, 400, 200, 200))
+    assert np.isfinite(image).all()
+    assert image.min() > 0
+    assert image.std() > 0
