@@ -86,14 +86,15 @@ class Chain:
         by_state[:, :, 6] = from_mast @ (rot_z_rate(pan) @ Y)
         by_state[:, :, 7] = from_mast @ (Z @ rot_y_rate(tilt))
         by_state[:, :, 8:] = head.rotation.T @ by_joints
-        return uv, np.asarray(by_ih @ by_state)
+        J: Array = by_ih @ by_state
+        return uv, J
 
     def encoder_sigma_rad(self) -> Array:
         """Standard deviations of pan, tilt, arm, cabin; a uniform error of half-width a has a / sqrt(3)."""
         head, cabin = self.rig.head, self.rig.cabin
         uniform = np.array([head.pan_accuracy_rad, head.tilt_accuracy_rad]) / np.sqrt(3.0)
         sigma = np.concatenate([uniform, [cabin.joint_sigma_rad] * 2])
-        return np.maximum(sigma, _SIGMA_FLOOR_RAD)
+        return np.asarray(np.maximum(sigma, _SIGMA_FLOOR_RAD), dtype=np.float64)
 
     def state_covariance(self, pose_covariance: Array) -> Array:
         """Covariance (10, 10) of a state whose body pose has this (6, 6) one."""

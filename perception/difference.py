@@ -7,6 +7,7 @@ of the light cancels; N such differences are averaged.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.types import Array
+
+_LEAK_FACTOR = 1.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +78,10 @@ def difference(
 ) -> Difference:
     """Difference images of a stack (frames, h, w) [counts].
 
-    Noise is taken from the images themselves, not below half the calibrated `noise_counts` (which guards
-    against an empty or clipped window); within an image its variance goes with the brightness (shot noise).
+    The noise of one frame comes from the dark frames, which no marker touches; that of a difference image
+    follows from its weights, unless the image itself is noisier (texture that leaked in). Within an image
+    the variance goes with the brightness (shot noise). `noise_counts`, the calibrated noise, bounds it from
+    below, as a clipped or empty window shows none.
     """
     if frames.ndim != 3 or len(frames) != len(leds):
         raise ValueError(f"frames: got shape {frames.shape}, expected ({len(leds)}, height, width)")
@@ -85,17 +90,34 @@ def difference(
     images = (W.astype(np.float32) @ flat).reshape(markers, *frames.shape[1:])
     reference = frames[[mask == 0 for mask in leds]].mean(axis=0)
     relative = np.sqrt(np.clip(reference / max(float(reference.mean()), 1.0), 0.2, 4.0))
-    sigma = np.stack(
-        [
-            _noise(image / relative, noise_counts * np.linalg.norm(w)) * relative
-            for image, w in zip(images, W, strict=True)
-        ]
-    )
+    frame_noise = max(_frame_noise(frames, leds, relative), 0.3 * noise_counts)
+    expected = frame_noise * np.linalg.norm(W, axis=1)
+    scale = [_noise(image / relative, float(e)) for image, e in zip(images, expected, strict=True)]
+    sigma = np.array(scale, dtype=np.float32)[:, None, None] * relative
     pairs = min((leds.count(1 << m) for m in range(markers) if 1 << m in leds), default=0)
     return Difference(images, sigma.astype(np.float32), reference, pairs)
 
 
-def _noise(image: NDArray[np.float32], expected: np.floating) -> float:
-    """Robust standard deviation of a difference image (interquartile range), at least half the expected."""
-    low, high = np.percentile(image, (25, 75))
-    return max(float(high - low) / 1.349, 0.5 * float(expected), 1e-6)
+def _frame_noise(frames: NDArray[np.float32], leds: Sequence[int], relative: NDArray[np.float32]) -> float:
+    """Standard deviation of one frame's pixel from first and last dark frame [counts], 0 with only one."""
+    dark = [i for i, mask in enumerate(leds) if mask == 0]
+    if len(dark) < 2:
+        return 0.0
+    return _spread((frames[dark[0]] - frames[dark[-1]]) / relative) / math.sqrt(2.0)
+
+
+def _noise(image: NDArray[np.float32], expected: float) -> float:
+    """The expected noise of a difference image, or what it shows where that is clearly more [counts]."""
+    shown = _spread(image)
+    return shown if shown > _LEAK_FACTOR * expected else max(expected, 1e-6)
+
+
+def _spread(image: NDArray[np.float32]) -> float:
+    """Standard deviation without what lies beyond 4 of them (markers, hot pixels).
+
+    Not from quantiles: counts are whole numbers, a quantile of their difference is off by up to half of one.
+    """
+    pixels = image.ravel() - image.mean()
+    for _ in range(2):
+        pixels = pixels[np.abs(pixels) <= 4 * pixels.std()]
+    return float(pixels.std())

@@ -2,7 +2,7 @@
 
 The filter is the expected point spread; its output over its own noise is the SNR of a marker centred
 there. Peaks above a threshold set by the false-alarm rate for the whole window are fitted for column, row
-and flux; the covariance of the centre is the Cramer-Rao bound at the fitted flux.
+and flux; the covariance of the centre is the Cramer-Rao bound at the fitted flux, with its second-order term.
 """
 
 from __future__ import annotations
@@ -22,6 +22,9 @@ _FIT_STEPS = 12
 _MAX_STEP_PX = 0.7
 _CONVERGED_PX = 1e-4
 _MAX_WANDER_PX = 2.0
+# Second order of maximum likelihood: the centre's variance exceeds the bound by this over SNR squared
+# (measured at SNR 6 to 14 and spreads of 1.6 to 5 m: 4 to 7).
+_SECOND_ORDER = 5.0
 SIGMA_FLOOR_PX = 0.01  # what is left of lens calibration and spread model
 
 
@@ -130,7 +133,8 @@ def _fit(
         if max(abs(dx), abs(dy)) < _CONVERGED_PX:
             break
     covariance = np.linalg.inv(F)
-    centre = covariance[1:, 1:] + SIGMA_FLOOR_PX**2 * np.eye(2)
+    snr_squared = flux**2 / covariance[0, 0]
+    centre = covariance[1:, 1:] * (1 + _SECOND_ORDER / snr_squared) + SIGMA_FLOOR_PX**2 * np.eye(2)
     return Detection(np.array([x, y]), centre, flux, math.sqrt(covariance[0, 0]))
 
 

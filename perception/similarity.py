@@ -19,6 +19,7 @@ from perception.checks import as_finite
 Frames = NDArray[np.float32]
 
 _MARKER_NOISES = 12.0  # a pixel that changes by more is a marker's, not the background's
+_VISIBLE_NOISE = 0.5  # a fitted change that alters pixels by less than this is noise fitted to noise
 _MIN_BACKGROUND = 0.5  # share of pixels that must be background for that to make sense
 
 
@@ -64,7 +65,14 @@ def compare(
     rest = np.sqrt(np.mean(np.clip(flat, -limit, limit) ** 2, axis=1)).astype(np.float64)
     fitted = coefficients.astype(np.float64)
     shift, gain, offset = -fitted[:, :2], fitted[:, 2], fitted[:, 3]
-    problem = _problem(shift, gain, offset / noise_counts, rest / noise_counts, limits or SimilarityLimits())
+    visible = np.abs(fitted) * basis.std(axis=1) > _VISIBLE_NOISE * noise_counts
+    problem = _problem(
+        shift * visible[:, :2],
+        gain * visible[:, 2],
+        offset / noise_counts,
+        rest / noise_counts,
+        limits or SimilarityLimits(),
+    )
     flat += mean.reshape(1, -1)
     return Similarity(shift, gain, offset, rest, flat.reshape(frames.shape), problem)
 
