@@ -104,7 +104,6 @@ SIGNATURES: Mapping[Hypothesis, Signature] = {
     Hypothesis.NOMINAL: NOMINAL,
     Hypothesis.SLIP_LONGITUDINAL: {
         Channel.ADVANCE_RATIO: Normal(0.55, 0.25),
-        
     },
     Hypothesis.SLIP_TURNING: {Channel.TURN_RATIO: Normal(0.7, 0.5)},
     Hypothesis.TRACK_ASYMMETRY: {Channel.HEADING_Z: Normal(0.0, 6.0)},

@@ -124,6 +124,13 @@ class RoverBody:
             physicsClientId=self.client,
         )
 
+    def hold_shoes(self) -> None:
+        """Make the shoes' places their setpoints: motors at rest are locked, they do not catch up."""
+        for side, setpoint in enumerate(self._setpoints):
+            joints = [TRACK_JOINTS[side] + k for k in (YAW, SIDE, BELT)]
+            states = pybullet.getJointStates(self.id, joints, physicsClientId=self.client)
+            setpoint.yaw_rad, setpoint.side_m, setpoint.belt_m = (state[0] for state in states)
+
     def _rebase(self, side: int) -> None:
         """Put the shoe back under the chassis where it has gone too far, keeping the lag along x and y."""
         setpoint = self._setpoints[side]

@@ -16,6 +16,7 @@ class Localise(ActionLeaf):
     pose = InOut[PoseEstimate](POSE, "the pose, as measured")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]
     budget = In[float](DURATION, "mission time it may take", default=900.0)
+    settle = In[float](DURATION, "time at rest before the first exposure", default=5.0)
 
     outcomes = (
         Reason.DONE,
@@ -28,8 +29,19 @@ class Localise(ActionLeaf):
         Reason.DEVICE,
     )
 
-    def request(self) -> Action[PoseEstimate]:
+    def begin(self) -> None:
         self.services.devices.tracks.stop()
+        clock = self.services.clock
+        self._start_tick = clock.ticks + clock.ticks_for(self.settle)
+
+    def step(self) -> Outcome[object] | None:
+        if self.services.clock.ticks < self._start_tick:
+            return None
+        if self._action is None:
+            self._action = self.request()
+        return super().step()
+
+    def request(self) -> Action[PoseEstimate]:
         predicted = self.services.classification.predicted()
         return self.services.localizer.locate(LocaliseRequest(self.quality, predicted, self.budget))
 
