@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import cv2
@@ -15,7 +16,7 @@ _DARK_PERCENT, _BRIGHT_PERCENT = 0.5, 99.9
 
 
 def annotated(
-    counts: NDArray[np.uint16],
+    counts: NDArray[np.uint16] | NDArray[np.float32],
     shown: Window,
     camera: str,
     detected: Mapping[int, Vec2],
@@ -27,7 +28,8 @@ def annotated(
     """A picture of the part `shown` of a frame and what was found there, ready for the record.
 
     `counts` holds that part, shape (height, width). Marker centres by marker number and windows are given
-    in pixels of the full frame, where (0, 0) is the middle of the first pixel.
+    in pixels of the full frame, where (0, 0) is the middle of the first pixel; a centre that is NaN is left
+    out.
     """
     image, scale = picture(counts, camera, longest_px)
 
@@ -35,6 +37,7 @@ def annotated(
         return tuple(
             Spot(marker, _scaled(u - shown.u, scale), _scaled(v - shown.v, scale))
             for marker, (u, v) in sorted(centres.items())
+            if math.isfinite(u) and math.isfinite(v)
         )
 
     boxes = tuple(
@@ -49,7 +52,9 @@ def _scaled(coordinate: float, scale: float) -> float:
     return (coordinate + 0.5) * scale - 0.5
 
 
-def picture(counts: NDArray[np.uint16], camera: str, longest_px: int = 512) -> tuple[ImageEvent, float]:
+def picture(
+    counts: NDArray[np.uint16] | NDArray[np.float32], camera: str, longest_px: int = 512
+) -> tuple[ImageEvent, float]:
     """A PNG of one exposure, contrast stretched, no side longer than `longest_px`; and its scale.
 
     `counts` has shape (height, width). The picture is `scale` (1 or less) times its size.

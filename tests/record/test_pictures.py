@@ -38,7 +38,14 @@ def test_marks_lie_where_the_marker_is_in_the_picture(longest):
     shown = Window(300, 200, 400, 300)
     counts = spot_image(300, 400, 123.0, 87.0)
     image, marks = annotated(
-        counts, shown, "left", {2: (423.0, 287.0)}, {}, [Window(400, 250, 60, 80)], "", longest
+        counts,
+        shown,
+        "left",
+        {2: (423.0, 287.0), 3: (np.nan, np.nan)},
+        {},
+        [Window(400, 250, 60, 80)],
+        "",
+        longest,
     )
     found = decoded(image).astype(float)
     found[found < 60] = 0
