@@ -19,10 +19,12 @@ def duration(seconds: float) -> str:
     """Mission time for people: 45 s, 12 min 05 s, 3 h 07 min."""
     whole = round(seconds)
     if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60:02d} s"
-    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+        parts = [f"{whole} s"]
+    elif whole < 3600:
+        parts = [f"{whole // 60} min", f"{whole % 60:02d} s"]
+    else:
+        parts = [f"{whole // 3600} h", f"{whole % 3600 // 60:02d} min"]
+    return " ".join(parts).replace(" ", "\u00a0")  # never broken over two lines
 
 
 def millimetres(metres: float | None, digits: int = 1) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 
 from executive.errors import RecordError
 from executive.telemetry import History, summarise
-from executive.telemetry.events import RouteEvent, SegmentEvent
+from executive.telemetry.events import RouteEvent, SegmentEvent, Start
 from executive.telemetry.result import vision_fixes
 from executive.telemetry.truth import CrossTrack, PoseError, Track, cross_track
 from executive.types import PoseEstimate, Segment
@@ -88,10 +88,16 @@ def gather(folder: Path) -> Run:
         missing.append(f"record.mcap was cut off: it reads up to {history.end_s:.0f} s of mission time")
     world = _history(truth, "no truth: true errors cannot be given, only what the rover believed", missing)
     scenario = folder / "scenario.yaml"
+    text = scenario.read_text() if scenario.is_file() else _recorded_scenario(history)
     if not scenario.is_file():
-        missing.append("scenario.yaml: no resolved scenario, so the run cannot be repeated from here")
-    text = scenario.read_text() if scenario.is_file() else ""
+        instead = "the copy in the record is shown" if text else "the run cannot be repeated from here"
+        missing.append(f"scenario.yaml: not there; {instead}")
     return Run(folder, text, _result(folder, missing), history, world, tuple(missing))
+
+
+def _recorded_scenario(history: History) -> str:
+    start = history.last(Start)
+    return start.event.scenario_yaml if start is not None else ""
 
 
 def _history(path: Path, otherwise: str, missing: list[str]) -> History:

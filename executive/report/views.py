@@ -108,14 +108,17 @@ def _size(image: ImageEvent) -> tuple[int, int]:
 
 
 def _cut(marks: AnnotationsEvent | None, width: int, height: int) -> tuple[float, float, float, float]:
-    """The 4:3 part of the picture to show: the windows with a border of half their size, else the whole."""
+    """The 4:3 part of the picture to show: the windows with some border, else the whole picture."""
     if marks is None or not marks.windows:
         return 0.0, 0.0, float(width), float(height)
     left, top = min(b.u for b in marks.windows), min(b.v for b in marks.windows)
     right = max(b.u + b.width for b in marks.windows)
     bottom = max(b.v + b.height for b in marks.windows)
     w = max(1.35 * (right - left), 1.35 * (bottom - top) * 4 / 3, 24.0)
-    return (left + right - w) / 2, (top + bottom - w * 0.75) / 2, w, w * 0.75
+    w = min(w, float(width), height * 4 / 3)
+    u = min(max((left + right - w) / 2, 0.0), width - w)
+    v = min(max((top + bottom - w * 0.75) / 2, 0.0), height - w * 0.75)
+    return u, v, w, w * 0.75
 
 
 def _marks(marks: AnnotationsEvent | None, unit: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 from types import TracebackType
+from typing import Self
 
 from mcap.well_known import MessageEncoding
 from mcap.writer import CompressionType
@@ -81,7 +82,7 @@ class _McapSink:
             self._schemas[full_name] = self._writer.register_schema(full_name, "protobuf", files)
         return self._schemas[full_name]
 
-    def __enter__(self) -> _McapSink:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

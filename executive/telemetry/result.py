@@ -46,7 +46,7 @@ _TRUTH_KEYS = (
 class RunFigures:
     """What the record cannot know: wall time [s] in all and by part, and how the expectations came out."""
 
-    wall_s: float = 0.0
+    wall_s: float | None = None
     wall: Mapping[str, float] = field(default_factory=dict)
     expectations: Sequence[Mapping[str, object]] = ()
     waypoints_total: int | None = None

@@ -284,7 +284,7 @@ def make_run(folder: Path, seed: int = 7) -> Path:
     rng = np.random.default_rng(seed)
     (folder / "scenario.yaml").write_text(SCENARIO)
     with Recorder(folder / "record.mcap") as record, TruthRecorder(folder / "truth.mcap") as truth:
-        story = Story(record, truth, rng)  # type: ignore[arg-type]
+        story = Story(record, truth, rng)
         record.write(Start("synthetic_traverse", SCENARIO, seed, TICK_S, "full", {"longarm": "0.1.0"}), 0.0)
         record.write(terrain(rng), 0.0)
         record.write(RouteEvent(segments()), 0.0)

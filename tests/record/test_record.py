@@ -36,6 +36,7 @@ from executive.telemetry.events import (
 )
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.topics import RECORD, TRUTH
+from executive.telemetry.versions import versions
 from executive.types import Call, Point, PoseEstimate, Reason, Segment, Source
 
 SEGMENT = Segment(Point(1.0, 0.1), Point(2.0, -0.3), 0.03, 0.25, 0.02, 1)
@@ -207,3 +208,7 @@ def test_killed_writer_leaves_all_it_flushed(tmp_path):
 def test_finished_record_is_known_to_be_complete(tmp_path):
     write(tmp_path / "r.mcap")
     assert History.of(tmp_path / "r.mcap").complete
+
+
+def test_versions_name_what_is_installed_and_nothing_else():
+    assert versions(("numpy", "no-such-package-anywhere")) == {"numpy": np.__version__}

@@ -236,3 +236,10 @@ def test_synthetic_runs_of_one_seed_have_one_digest(tmp_path, finished_run):
     other = make_run(tmp_path / "other", seed=8)
     assert read_result(again)["digest"] == read_result(finished_run)["digest"]
     assert read_result(other)["digest"] != read_result(finished_run)["digest"]
+
+
+def test_scenario_is_taken_from_the_record_where_its_file_is_gone(run_copy):
+    (run_copy / "scenario.yaml").unlink()
+    page = write_report(run_copy).read_text()
+    assert "the copy in the record is shown" in page
+    assert "scenario: synthetic_traverse" in page
