@@ -111,7 +111,8 @@ def resolve(source: Source) -> ResolvedScenario:
         if backend is not None:
             problems.attempt(lambda: _check_tier(source, file.tier, backend))
     problems.check()
-    assert file and backend and world is not None and rig and tree and tree_path  # noqa: S101  (else a problem)
+    if file is None or backend is None or world is None or rig is None or tree is None or tree_path is None:
+        raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
     mission = file.mission.model_copy(update={"tree": portable("trees", tree_path)})
     return ResolvedScenario(
         file.model_copy(update={"mission": mission, "world": {}, "rig": {}, "faults": ()}),
