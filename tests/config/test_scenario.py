@@ -116,10 +116,10 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
          "missions/short.yaml:3:22: got on_track 0.3 m with off_track 0.25 m, expected on_track to be less than "
          "off_track"),
         ("tolerance: 20 mm", "tolerance: 260 mm",
-         "missions/short.yaml:7:35: got tolerance 0.26 m with off_track 0.25 m, expected tolerance to be at most "
+         "missions/short.yaml:7:37: got tolerance 0.26 m with off_track 0.25 m, expected tolerance to be at most "
          "off_track"),
-        ("tree: go", "tree: gp",
-         'missions/short.yaml:2:7: got "gp", expected a file or a name in trees/; did you mean "go"?'),
+        ("tree: go", "tree: goo",
+         'missions/short.yaml:2:7: got "goo", expected a file or a name in trees/; did you mean "go"?'),
     ],
 )  # fmt: skip
 def test_an_impossible_mission_is_refused_where_it_says_so(folder, old, new, problem):
@@ -138,7 +138,9 @@ def test_problems_in_an_option_are_located_in_it(folder):
     problems = problems_of("scenarios/dark.yaml", overrides=["seed=3", "world.light.sun_elevation=20 m"])
     assert problems == ["--set:2:27: got '20 m' (a length), expected an angle such as '0.5 deg'"]
     problems = problems_of("scenarios/dark.yaml", overrides=["world.lihgt.sun_elevation=20 deg"])
-    assert problems == ['--set:1:1: got the unknown key "lihgt", expected light or mast_height; did you mean "light"?']
+    assert problems == [
+        '--set:1:1: got the unknown key "lihgt", expected light or mast_height; did you mean "light"?'
+    ]
     assert problems_of("scenarios/dark.yaml", overrides=["seed"])[0].startswith("--set:1:1: got")
     assert problems_of("scenarios/dark.yaml", overrides=["seed.x=3"])[0].startswith("--set:1:1: got")
 
@@ -189,10 +191,25 @@ def test_files_of_the_working_folder_come_before_the_installed_ones(tmp_path, mo
 
 
 words = st.sampled_from(
-    ["scenario", "mission", "tree", "seed", "world", "faults", "from", "expect", "waypoints", "x", "30 mm", "1 m"]
+    [
+        "scenario",
+        "mission",
+        "tree",
+        "seed",
+        "world",
+        "faults",
+        "from",
+        "expect",
+        "waypoints",
+        "x",
+        "30 mm",
+        "1 m",
+    ]
 )
 values = st.recursive(
-    st.one_of(st.none(), st.booleans(), st.integers(), st.floats(allow_nan=False), words, st.text(max_size=5)),
+    st.one_of(
+        st.none(), st.booleans(), st.integers(), st.floats(allow_nan=False), words, st.text(max_size=5)
+    ),
     lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(words, inner, max_size=4)),
     max_leaves=12,
 )
@@ -203,9 +220,9 @@ values = st.recursive(
 def test_any_mapping_resolves_or_is_a_config_error(folder, data):
     import json
 
-    (folder / "fuzz.yaml").write_text(json.dumps(data | {"backend": "plain"}))
+    (folder / "fuzz.yaml").write_text(json.dumps(data))
     try:
-        resolve_scenario("fuzz.yaml")
+        resolve_scenario("fuzz.yaml", overrides=["backend=plain"])
     except ConfigError as error:
         assert all(p.line >= 1 and p.column >= 1 for p in error.problems)
 
