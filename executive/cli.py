@@ -151,12 +151,14 @@ def show(tree: str, form: str, output: Path | None) -> int:
     if output is not None:
         output.write_bytes(content)
     else:
-        click.get_binary_stream("stdout").write(content)
+        click.echo(content, nl=False)
     return 0
 
 
 def _catalogue(kind: str, example: str) -> None:
-    @cli.command(kind, help=f"List the {kind}, or one of them in full.\n\nExample: longarm {kind} {example}")
+    about = f"List the {kind}, or one of them in full.\n\nExample: longarm {kind} {example}"
+
+    @cli.command(kind, help=about)
     @click.argument("name", required=False)
     @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
     def command(name: str | None, as_json: bool) -> int:

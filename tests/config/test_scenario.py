@@ -98,7 +98,7 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
         "scenarios/dark.yaml:10:18: got '3 m' (a length), expected a duration such as '36 s'",
         'scenarios/dark.yaml:11:19: got "reachd", expected reached, safe_hold, help or time_limit; '
         'did you mean "reached"?',
-        'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, mission, seed, tier, '
+        'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, mission, seed, tier, '  # noqa: E501
         'backend, localizer, world, rig, faults, expect or time_limit; did you mean "time_limit"?',
     ]
 
@@ -107,16 +107,16 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
     ("old", "new", "problem"),
     [
         ("{x: 3.2 m, y: 0.1 m}", "{x: 32 m, y: 0.1 m}",
-         "missions/short.yaml:6:5: got an unreachable way-point, 32.00 m from the lander, expected 1.2 m to 20 m"),
+         "missions/short.yaml:6:5: got an unreachable way-point, 32.00 m from the lander, expected 1.2 m to 20 m"),  # noqa: E501
         ("{x: 3.2 m, y: 0.1 m}", "{x: 0.3 m, y: 0.1 m}",
-         "missions/short.yaml:6:5: got an unreachable way-point, 0.32 m from the lander, expected 1.2 m to 20 m"),
+         "missions/short.yaml:6:5: got an unreachable way-point, 0.32 m from the lander, expected 1.2 m to 20 m"),  # noqa: E501
         ("{x: 3.2 m, y: 0.1 m}", "{x: 2.6 m, y: -400 mm}",
          "missions/short.yaml:6:5: got the same place as way-point 0, expected a segment with a length"),
         ("on_track: 30 mm", "on_track: 300 mm",
-         "missions/short.yaml:3:22: got on_track 0.3 m with off_track 0.25 m, expected on_track to be less than "
+         "missions/short.yaml:3:22: got on_track 0.3 m with off_track 0.25 m, expected on_track to be less than "  # noqa: E501
          "off_track"),
         ("tolerance: 20 mm", "tolerance: 260 mm",
-         "missions/short.yaml:7:37: got tolerance 0.26 m with off_track 0.25 m, expected tolerance to be at most "
+         "missions/short.yaml:7:37: got tolerance 0.26 m with off_track 0.25 m, expected tolerance to be at most "  # noqa: E501
          "off_track"),
         ("tree: go", "tree: goo",
          'missions/short.yaml:2:7: got "goo", expected a file or a name in trees/; did you mean "go"?'),
@@ -229,3 +229,15 @@ def test_any_mapping_resolves_or_is_a_config_error(folder, data):
 
 def test_a_mission_loads_alone(folder):
     assert load_mission(Path("missions/short.yaml")).route()[1].index == 1
+
+
+def test_inputs_of_the_tree_are_checked_against_its_ports(folder):
+    ports = "ports: {route: {type: Route}, pause: {type: duration, default: 1 s}}"
+    rewritten(folder, "ports: {route: {type: Route}}", ports, "trees/go.yaml")
+    path = rewritten(folder, "tree: go\n", "tree: go\ntree_inputs: {pause: 2 min}\n", "missions/short.yaml")
+    assert resolve_scenario(path).inputs == {"pause": 120.0}
+    rewritten(folder, "{pause: 2 min}", "{pause: 2 m, puse: 1 s}", "missions/short.yaml")
+    assert problems_of(path) == [
+        "missions/short.yaml:3:22: got '2 m' (a length), expected a duration such as '36 s'",
+        'missions/short.yaml:3:27: got the unknown input "puse" of go, expected route or pause; did you mean "pause"?',  # noqa: E501
+    ]

@@ -83,7 +83,7 @@ def test_bytes_that_are_not_utf_8_are_located(tmp_path):
 
 
 yaml_like = st.lists(
-    st.sampled_from(list("abc:- {}[]&*!|>'\"\n\t#%@,?~0.\\") + ["\n  ", "---", "&a", "*a", "!!", "<<: "]),
+    st.sampled_from([*list("abc:- {}[]&*!|>'\"\n\t#%@,?~0.\\"), "\n  ", "---", "&a", "*a", "!!", "<<: "]),
     max_size=40,
 ).map("".join)
 

@@ -1,4 +1,4 @@
-"""What the tree tests share: services with a clock and a scripted pool, and a few leaves that keep a diary."""
+"""What the tree tests share: services with a clock and a scripted pool, leaves that keep a diary."""
 
 from __future__ import annotations
 
