@@ -86,4 +86,6 @@ def as_sarif(problems: Sequence[Problem]) -> str:
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
 
-WRITERS = {"text": as_text, "json": as_json, "sarif": as_sarif}
+def written(problems: Sequence[Problem], form: str) -> str:
+    """The problems as text, json or sarif."""
+    return {"text": as_text, "json": as_json, "sarif": as_sarif}[form](problems)

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import sys
 from pathlib import Path
@@ -89,8 +90,7 @@ def run(
 
     Example: longarm run missions/first_traverse.yaml --seed 3 --set "world.light.sun_elevation=20 deg"
     """
-    from executive import app
-
+    app = importlib.import_module("executive.app")
     return int(
         app.run(file, seed=seed, out=out, tier=tier, overrides=overrides, as_json=as_json, quiet=quiet)
     )
@@ -103,8 +103,7 @@ def report(run_dir: Path) -> int:
 
     Example: longarm report runs/first_traverse-7
     """
-    from executive import app
-
+    app = importlib.import_module("executive.app")
     return int(app.report(run_dir))
 
 
@@ -127,7 +126,7 @@ def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
     if missing:
         return 2
     problems = sorted({problem for file in files for problem in checking.check_file(file)})
-    click.echo(checking.WRITERS["json" if as_json else form](problems), nl=False)
+    click.echo(checking.written(problems, "json" if as_json else form), nl=False)
     return 1 if problems else 0
 
 
@@ -152,12 +151,14 @@ def show(tree: str, form: str, output: Path | None) -> int:
     if output is not None:
         output.write_bytes(content)
     else:
-        click.get_binary_stream("stdout").write(content)
+        click.echo(content, nl=False)
     return 0
 
 
 def _catalogue(kind: str, example: str) -> None:
-    @cli.command(kind, help=f"List the {kind}, or one of them in full.\n\nExample: longarm {kind} {example}")
+    about = f"List the {kind}, or one of them in full.\n\nExample: longarm {kind} {example}"
+
+    @cli.command(kind, help=about)
     @click.argument("name", required=False)
     @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
     def command(name: str | None, as_json: bool) -> int:

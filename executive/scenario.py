@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
 from executive.errors import ConfigError
 from executive.rig import RigCalibration
+from executive.tree.literals import literal
 from executive.tree.load import load_tree
 from executive.tree.spec import TreeSpec
 
@@ -37,6 +38,8 @@ class ResolvedScenario:
     faults: tuple[ResolvedFault, ...]
     tree: TreeSpec
     backend: BackendSpec
+    inputs: Mapping[str, object]
+    """The mission's `tree_inputs`, in SI, for the tree's ports of these names."""
 
     @property
     def name(self) -> str:
@@ -105,13 +108,15 @@ def resolve(source: Source) -> ResolvedScenario:
     faults = problems.attempt(lambda: fault_entries(source, ("faults",)))
     tree_path = problems.attempt(lambda: _tree_path(source))
     tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
+    inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
     if file is not None:
         problems.found.extend(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(_not_yet(source))
         if backend is not None:
             problems.attempt(lambda: _check_tier(source, file.tier, backend))
     problems.check()
-    assert file and backend and world is not None and rig and tree and tree_path  # noqa: S101  (else a problem)
+    if file is None or backend is None or world is None or rig is None or tree is None or tree_path is None:
+        raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
     mission = file.mission.model_copy(update={"tree": portable("trees", tree_path)})
     return ResolvedScenario(
         file.model_copy(update={"mission": mission, "world": {}, "rig": {}, "faults": ()}),
@@ -120,6 +125,7 @@ def resolve(source: Source) -> ResolvedScenario:
         faults or (),
         tree,
         backend,
+        inputs or {},
     )
 
 
@@ -175,6 +181,25 @@ def _tree_path(source: Source) -> Path | None:
     if not isinstance(name, str) or not name:
         return None
     return find("trees", name, source.folder(("mission",)), source.at(place))
+
+
+def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
+    place: Place = ("mission", "tree_inputs")
+    given = source.get(place) if place in source.values else {}
+    ports = {port.name: port for port in tree.ports}
+    problems = Problems()
+    values: dict[str, object] = {}
+    for name in given if isinstance(given, dict) else ():
+        if name not in ports:
+            message = (
+                f'got the unknown input "{name}" of {tree.name}, expected {listed(list(ports)) or "none"}'
+            )
+            problems.add(source.key_at((*place, name)).problem(message + guess(name, ports)))
+        else:
+            kind = ports[name].type
+            values[name] = problems.attempt(lambda n=name, k=kind: literal(source, (*place, n), k))  # type: ignore[misc]
+    problems.check()
+    return values
 
 
 def _check_tier(source: Source, tier: str, backend: BackendSpec) -> None:

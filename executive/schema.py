@@ -63,7 +63,7 @@ def _parameters(kind: NodeType) -> dict[str, Any]:
     if kind.children == "many":
         properties["children"] = {"type": "array", "items": node, "minItems": 1}
     required = [port.name for port in kind.ports if port.default is REQUIRED]
-    mapping = {"type": ["object", "null"], "properties": properties, "description": kind.doc}
+    mapping: dict[str, Any] = {"type": ["object", "null"], "properties": properties, "description": kind.doc}
     if kind.children == "one" and not kind.ports:
         return {"anyOf": [mapping, node], "description": kind.doc}
     mapping |= {"required": required, "additionalProperties": False}

@@ -142,12 +142,8 @@ def quantity(given: object, kind: Kind) -> float:
     except UnitError as error:
         raise UnitError(_message(f"{_shown(given)} ({error})", kind)) from None
     if found != dimension(kind.unit):
-        what = (
-            f"{_shown(given)} without a unit"
-            if found == PLAIN
-            else f"{_shown(given)}, {articled(name_of(found))}"
-        )
-        raise UnitError(_message(what, kind))
+        what = "without a unit" if found == PLAIN else f"({articled(name_of(found))})"
+        raise UnitError(_message(f"{_shown(given)} {what}", kind))
     return value
 
 

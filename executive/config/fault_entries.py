@@ -1,4 +1,4 @@
-"""The `faults:` list of a scenario: each one kind with its parameters, when it starts and how long it lasts."""
+"""The `faults:` list of a scenario: a kind with its parameters, when it starts, how long it lasts."""
 
 from __future__ import annotations
 
@@ -71,7 +71,8 @@ def _fault(source: Source, place: Place, entry: dict[str, Any]) -> ResolvedFault
     duration_s = problems.attempt(lambda: _duration_s(source, place, entry))
     name = problems.attempt(lambda: _name(source, place, entry, kind))
     problems.check()
-    assert parameters is not None and start is not None  # noqa: S101  (else a problem)
+    assert parameters is not None  # noqa: S101  (else a problem was found)
+    assert start is not None  # noqa: S101
     return ResolvedFault(name or kind, kind, parameters, start, duration_s)
 
 

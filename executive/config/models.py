@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
@@ -40,7 +41,7 @@ class MissionFile(Strict):
     tree: Name = "navigate"
     segments: Margins = Margins()
     waypoints: Annotated[tuple[Waypoint, ...], Field(min_length=2)]
-    tree_inputs: dict[str, Any] = {}
+    tree_inputs: dict[str, Any] = Field(default_factory=dict)
 
     def margins(self, index: int) -> Margins:
         """The margins of the segment that ends at way-point `index`."""
@@ -56,7 +57,7 @@ class MissionFile(Strict):
         points = [Point(w.x, w.y) for w in self.waypoints]
         return tuple(
             Segment(start, end, m.on_track, m.off_track, m.tolerance, index)
-            for index, (start, end) in enumerate(zip(points, points[1:], strict=False))
+            for index, (start, end) in enumerate(pairwise(points))
             for m in (self.margins(index + 1),)
         )
 
@@ -109,8 +110,8 @@ class ScenarioFile(Strict):
     tier: Literal["full", "geometric"] = "full"
     backend: Name = "pybullet"
     localizer: Name = "led_stereo"
-    world: dict[str, Any] = {}
-    rig: dict[str, Any] = {}
+    world: dict[str, Any] = Field(default_factory=dict)
+    rig: dict[str, Any] = Field(default_factory=dict)
     faults: tuple[dict[str, Any], ...] = ()
     expect: Expect = Expect()
     time_limit: Annotated[Duration, Field(gt=0)] = 24 * 3600.0

@@ -1,4 +1,4 @@
-"""`--set world.light.sun_elevation=20 deg`: one value of a scenario replaced, located in the option itself."""
+"""`--set world.light.sun_elevation=20 deg`: one value of a scenario replaced, located in the option."""
 
 from __future__ import annotations
 

@@ -165,11 +165,13 @@ class Trace:
         """
         first: BaseException | None = None
         while self.entered:
-            _, leaf = self.entered.popitem()
+            path, leaf = next(reversed(self.entered.items()))
             try:
-                leaf.stop(Status.INVALID)
+                leaf.stop(Status.INVALID)  # halts only while the leaf is still listed as entered
             except Exception as error:
                 first = first or error
+            finally:
+                self.entered.pop(path, None)
         if first is not None:
             raise first
 

@@ -40,6 +40,7 @@ class Recover(Composite):
         self.path, self.trace, self.attempts = path, trace, attempts
         self.choose, self.conclude = choose, conclude
         self.child, self.strategies = child, strategies
+        self.under_way: Behaviour = child
         self.begin()
 
     def begin(self) -> None:
@@ -51,9 +52,9 @@ class Recover(Composite):
     def tick(self) -> Iterator[Behaviour]:
         if self.status is not Status.RUNNING:
             self.begin()
-            self.current_child = self.child
+            self.turn_to(self.child)
             self.trace.last_failure = None
-        running = self.current_child
+        running = self.under_way
         yield from running.tick()
         status = self.after_child() if running is self.child else self.after_strategy()
         if status is Status.RUNNING:
@@ -61,6 +62,9 @@ class Recover(Composite):
         else:
             self.stop(status)
         yield self
+
+    def turn_to(self, child: Behaviour) -> None:
+        self.under_way = self.current_child = child
 
     def after_child(self) -> Status:
         """The child has had its tick: done, under way, or failed, which is for the pool to answer."""
@@ -99,7 +103,7 @@ class Recover(Composite):
         self.tried += 1
         self.strategy = name
         self.feedback_message = f"trying {name} ({self.tried} of {self.attempts})"
-        self.current_child = self.strategies[name]
+        self.turn_to(self.strategies[name])
         return Status.RUNNING
 
     def give_up(self, why: str) -> Status:
@@ -124,7 +128,7 @@ class Recover(Composite):
             return self.answer(self.failure)
         self.unverified = self.strategy
         self.trace.last_failure = None
-        self.current_child = self.child
+        self.turn_to(self.child)
         return Status.RUNNING
 
     def stop(self, new_status: Status = Status.INVALID) -> None:

@@ -20,7 +20,7 @@ SYMBOLS = {
     "force_success": "✓",
     "force_failure": "✗",
 }
-MAX_LINE = 44
+MAX_LINE, MAX_GUARD = 44, 72
 
 
 @dataclass
@@ -79,7 +79,7 @@ class _Maker:
             SYMBOLS.get(node.type, ""),
             "recover" if node.type == "recover" else node.category,
             _lines(node),
-            tuple(_cut(f"{word}: {guard.text}") for word, guard in node.guards.items()),
+            tuple(_cut(f"{word}: {guard.text}", MAX_GUARD) for word, guard in node.guards.items()),
             outcome=self.outcomes.get(path),
         )
         if node.tree is not None:
@@ -121,5 +121,5 @@ def _doc_lines(doc: str) -> tuple[str, ...]:
     return tuple(lines[:3])
 
 
-def _cut(text: str) -> str:
-    return text if len(text) <= MAX_LINE else text[: MAX_LINE - 1] + "…"
+def _cut(text: str, longest: int = MAX_LINE) -> str:
+    return text if len(text) <= longest else text[: longest - 1] + "…"

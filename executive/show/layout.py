@@ -8,7 +8,7 @@ from __future__ import annotations
 from executive.show.boxes import Box
 
 TITLE_PX, LINE_PX = 13.0, 10.5
-TITLE_WIDTH, LINE_WIDTH = 0.60, 0.56
+TITLE_WIDTH, LINE_WIDTH = 0.67, 0.60
 """Mean width of a character, in its size: sans-serif, a little generous."""
 PAD_PX, ROW_PX, HEAD_PX = 10.0, 14.0, 28.0
 INDENT_PX, BELOW_PX, COLUMN_PX, GAP_PX = 26.0, 12.0, 44.0, 12.0

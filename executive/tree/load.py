@@ -171,6 +171,8 @@ class _TreeReader:
         kind = self.trees.types.get(word)
         if data is None or (isinstance(data, str) and data == word):
             return {}
+        if kind is not None and kind.children == "one" and not kind.ports and isinstance(data, str):
+            return {data: None}  # a bare child: `inverter: facing`
         if kind is not None and kind.children in ("two", "many") and isinstance(data, list):
             return {"children": data}
         if isinstance(data, dict):

@@ -1,17 +1,20 @@
-"""What the tree tests share: services with a clock and a scripted pool, and a few leaves that keep a diary."""
+"""What the tree tests share: services with a clock and a scripted pool, leaves that keep a diary."""
 
 from __future__ import annotations
 
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
+
 from executive.clock import Clock
+from executive.errors import ConfigError
 from executive.nodes import LEAVES
 from executive.nodes.base import FromTree, In, InOut, Leaf, Out
+from executive.tree.build import build
+from executive.tree.load import load_tree_text
 from executive.types import Outcome, Reason
 from executive.values import INTEGER, LENGTH, POINT, POSE, SEGMENT, TEXT
-
-DIARY: str = "diary"
 
 
 class Act(Leaf):
@@ -101,3 +104,42 @@ class ScriptedPool:
 def services(pool: Any = None) -> Any:
     """The few services that these leaves use."""
     return SimpleNamespace(clock=Clock(1.0), pool=pool or ScriptedPool(), diary=[])
+
+
+class Bench:
+    """Loads trees of the test leaves from text, builds and ticks them."""
+
+    def __init__(self) -> None:
+        self.services = services()
+
+    def load(self, text: str):
+        return load_tree_text(text, "t.yaml", TEST_LEAVES)
+
+    def problems(self, text: str) -> list[str]:
+        with pytest.raises(ConfigError) as caught:
+            self.load(text)
+        return str(caught.value).splitlines()
+
+    def build(self, root: str, pool: Any = None, strategies: Any = None, ports: str = "{}", **inputs: Any):
+        self.services = services(pool)
+        made = {name: self.load(text) for name, text in (strategies or {}).items()}
+        spec = self.load(f"tree: t\nports: {ports}\nroot: {root}\n")
+        return build(spec, self.services, inputs, made, TEST_LEAVES)
+
+    def run(self, tree: Any, ticks: int = 100) -> str:
+        """Tick until the end (or so often); the last status."""
+        for _ in range(ticks):
+            tree.root.tick_once()
+            self.services.clock.advance()
+            if tree.root.status.value != "RUNNING":
+                break
+        return tree.root.status.value
+
+    @property
+    def diary(self) -> list[Any]:
+        return self.services.diary
+
+
+@pytest.fixture
+def bench() -> Bench:
+    return Bench()

@@ -1,0 +1,93 @@
+import pytest
+
+from executive.errors import ConfigError
+from executive.types import Reason
+
+STRATEGIES = {
+    "fix": "tree: fix\nroot: {act: {say: fix, ticks: 1}}",
+    "hopeless": "tree: hopeless\nroot: {act: {say: hopeless, reason: blocked}}",
+    "remeasure": (
+        "tree: remeasure\nports: {depth: {type: length, direction: out}}\nroot: {measure: {value: '{depth}'}}"
+    ),
+}
+
+
+class ScriptedPool:
+    """Chooses the names given, in turn; keeps what it was told."""
+
+    def __init__(self, *names):
+        self.names, self.failures, self.reports = list(names), [], []
+
+    def choose(self, failure):
+        self.failures.append(failure)
+        return self.names.pop(0) if self.names else None
+
+    def report(self, name, helped):
+        self.reports.append((name, helped))
+
+
+def test_a_strategy_is_chosen_by_the_failure_and_the_child_runs_again(bench):
+    pool = ScriptedPool("remeasure")
+    root = (
+        "{recover: {attempts: 3, child: {sequence: [{act: {say: child}}, "
+        "{always: {}, failure_if: '{depth} < 0.1 m'}]}}}"
+    )
+    ports = "{depth: {type: length, direction: inout}}"
+    tree = bench.build(root, pool, STRATEGIES, ports, depth=0.0)
+    assert bench.run(tree) == "SUCCESS"
+    assert [failure.reason for failure in pool.failures] == [Reason.GUARD]
+    assert pool.reports == [("remeasure", True)]
+    assert bench.diary.count("begin child") == 2
+    assert tree.store.values["t:depth"] == 0.25
+
+
+def test_a_strategy_that_changes_nothing_did_not_help(bench):
+    pool = ScriptedPool("fix", "fix")
+    tree = bench.build("{recover: {attempts: 5, child: {act: {reason: blocked}}}}", pool, STRATEGIES)
+    assert bench.run(tree) == "FAILURE"
+    assert pool.reports == [("fix", False), ("fix", False)]
+    path, outcome = tree.trace.last_failure
+    assert (path, outcome.reason) == ("t/recover", Reason.NO_STRATEGY)
+    assert outcome.detail == "no strategy fits; blocked: as told"
+
+
+def test_a_strategy_that_fails_itself_gives_way_to_the_next(bench):
+    pool = ScriptedPool("hopeless", "fix")
+    tree = bench.build("{recover: {attempts: 5, child: {act: {reason: tilt}}}}", pool, STRATEGIES)
+    bench.run(tree)
+    assert pool.reports == [("hopeless", False), ("fix", False)]
+    assert [failure.reason for failure in pool.failures] == [Reason.TILT] * 3
+
+
+def test_attempts_bound_how_often_the_pool_is_asked(bench):
+    pool = ScriptedPool(*["fix"] * 9)
+    tree = bench.build("{recover: {attempts: 2, child: {act: {reason: blocked}}}}", pool, STRATEGIES)
+    assert bench.run(tree) == "FAILURE"
+    assert len(pool.failures) == 2
+    assert tree.trace.last_failure[1].detail == "2 attempts used up; blocked: as told"
+
+
+def test_an_interrupted_strategy_is_halted(bench):
+    pool = ScriptedPool("fix")
+    tree = bench.build("{recover: {attempts: 2, child: {act: {reason: blocked}}}}", pool, STRATEGIES)
+    bench.run(tree, 2)
+    assert bench.diary[-1] == "begin fix"
+    tree.root.stop()
+    assert bench.diary[-1] == "halt fix"
+
+
+def test_every_strategy_has_its_own_path(bench):
+    tree = bench.build("{recover: {attempts: 2, child: act}}", ScriptedPool(), {"fix": STRATEGIES["fix"]})
+    assert set(tree.paths) == {"t/recover", "t/recover/act", "t/recover/fix", "t/recover/fix/act"}
+
+
+def test_a_strategy_that_needs_what_the_tree_lacks_is_refused(bench):
+    needy = {"needy": "tree: needy\nports: {segment: {type: Segment}}\nroot: act"}
+    with pytest.raises(ConfigError, match=r"needs \{segment\}"):
+        bench.build("{recover: {attempts: 2, child: act}}", ScriptedPool(), needy)
+
+
+def test_recover_inside_a_strategy_is_refused(bench):
+    nested = {"nested": "tree: nested\nroot: {recover: {attempts: 1, child: act}}"}
+    with pytest.raises(ConfigError, match="recover inside a strategy"):
+        bench.build("{recover: {attempts: 2, child: act}}", ScriptedPool(), nested)
