@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +12,7 @@ from executive.rig import RigCalibration
 from executive.types import Window
 from sim_pybullet.leds import MarkerOptics, Spot, add_spot
 from sim_pybullet.projection import View, head_views
-from sim_pybullet.radiometry import Exposure, calibrated_light
+from sim_pybullet.radiometry import Exposure, calibrated_light, spread_sigma_px
 from sim_pybullet.render import TerrainRenderer
 from sim_pybullet.rocks_view import draw_rock, far_first
 from sim_pybullet.rover_view import RoverRenderer
@@ -22,6 +23,7 @@ from sim_pybullet.terrain import Terrain
 Image = NDArray[np.float32]
 
 _KEPT_VIEWS = 8
+_NEAREST_M = 0.5
 
 
 class Picture:
@@ -53,8 +55,10 @@ class Picture:
         self._rover.draw(image, scene, view, window)
         for rock in rocks[len(before) :]:
             draw_rock(image, range_m, rock, self._ground.field, self._ground.sun, view, window)
-        image *= np.float32(self.exposure.ground_e)
-        return image
+        # One blur for the whole image, that of the rover's range: it is what the picture is taken for.
+        blur_px = spread_sigma_px(self.rig.sensor, max(rover_m, _NEAREST_M))
+        blurred = cv2.GaussianBlur(image, (0, 0), blur_px, borderType=cv2.BORDER_REPLICATE)
+        return np.asarray(blurred * np.float32(self.exposure.ground_e))
 
     def spots(self, scene: SceneState, camera: int) -> list[Spot]:
         """The markers as they would show in this camera if lit."""

@@ -33,7 +33,7 @@ _ROW_SAMPLES_FROM_M = 6.0  # beyond, a pixel is long on the ground and is sample
 
 @dataclass(frozen=True, eq=False)
 class GroundPoints:
-    """Where the pixels of a window look: site coordinates (h, w) [m], range [m] and footprint [m]."""
+    """Where the pixels of a window look: site coordinates (h, w), range and footprint [m], share of sky."""
 
     x_m: Image
     y_m: Image
@@ -41,7 +41,7 @@ class GroundPoints:
     range_m: Image
     across_m: Image
     along_m: Image
-    sky: NDArray[np.bool_]
+    sky: Image
 
 
 class TerrainRenderer:
@@ -67,7 +67,7 @@ class TerrainRenderer:
         shade_by_rocks(image, points.x_m, points.y_m, points.z_m, rocks, self.sun, view, window, samples)
         haze = 1 - np.exp(-points.range_m / np.float32(_HAZE_M))
         sky = np.repeat(_sky(view, window), samples, axis=0)
-        image += np.where(points.sky, 1, haze) * (sky - image)
+        image += np.maximum(points.sky, haze) * (sky - image)
         if samples > 1:
             image = image.reshape(window.height, samples, window.width).mean(axis=1)
         return image, points.range_m[::samples]
@@ -88,9 +88,11 @@ class TerrainRenderer:
             ((columns - u[0]) / _COARSE_U).astype(np.float32), ((rows - v[0]) / _COARSE_V).astype(np.float32)
         )
 
-        def fine(values: NDArray[Any], how: int = cv2.INTER_LINEAR) -> Image:
+        def fine(values: NDArray[Any]) -> Image:
             grid = np.asarray(values, dtype=np.float32).reshape(shape)
-            return np.asarray(cv2.remap(grid, map_u, map_v, how, borderMode=cv2.BORDER_REPLICATE))
+            return np.asarray(
+                cv2.remap(grid, map_u, map_v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+            )
 
         range_m = fine(depth * np.linalg.norm(directions, axis=1))
         across_m = range_m / np.float32(view.camera.focal_px)
@@ -102,7 +104,7 @@ class TerrainRenderer:
             range_m=range_m,
             across_m=across_m,
             along_m=across_m / np.float32(samples) / grazing,
-            sky=fine(sky, cv2.INTER_NEAREST) > 0.5,
+            sky=fine(sky),
         )
 
     def _light_at(self, x_m: Image, y_m: Image) -> Image:

@@ -51,7 +51,7 @@ class RoverRenderer:
         for hull in hulls:
             canvas.fill(hull, 1.0)
         shadow, _ = canvas.reduced()
-        image[canvas.part] *= 1 - np.float32(1 - SKYLIGHT) * cv2.GaussianBlur(shadow, (0, 0), 0.7)
+        image[canvas.part] *= 1 - np.float32(1 - SKYLIGHT) * shadow
 
     def draw(self, image: Image, scene: SceneState, view: View, window: Window) -> None:
         """Paint the rover over the image (h, w), in place."""
