@@ -21,6 +21,7 @@ Image = NDArray[np.float32]
 _SMOOTH_PX = 1.5
 _SMOOTH_NOISE = 1 / (2 * np.sqrt(np.pi) * _SMOOTH_PX)  # what the smoothing leaves of white noise
 _THRESHOLD_NOISES = 5.0
+_REGISTRATION_PX = 0.3  # how far off the frames may lie on each other
 _LEAST_AREA_PX = 12
 _MATCH_SCORE = 0.5
 _LARGEST_SHIFT_PX = 40
@@ -62,7 +63,9 @@ def motion_fragments(
     head_shift = _common_shift(first, second)
     second = _matched_light(first, _moved(second, head_shift))
     change = np.asarray(cv2.GaussianBlur(second - first, (0, 0), _SMOOTH_PX), dtype=np.float32)
-    marked = _fragment_mask(change, _change_noise(change, noise_counts))
+    allowance = _THRESHOLD_NOISES * _change_noise(change, noise_counts) + _REGISTRATION_PX * _steepness(first)
+    marked = _fragment_mask(change, allowance)
+    _clear_rim(marked, head_shift)
     mask = _near_largest(marked, reach_px)
     if not mask.any():
         return None
@@ -121,9 +124,22 @@ def _change_noise(change: Image, noise_counts: float) -> float:
     return max(measured, noise_counts * float(np.sqrt(2.0) * _SMOOTH_NOISE))
 
 
-def _fragment_mask(change: Image, noise: float) -> NDArray[np.uint8]:
+def _steepness(image: Image) -> Image:
+    """Slope of the smoothed picture [counts/px]: what a pixel of wrong registration would change."""
+    along_v, along_u = np.gradient(np.asarray(cv2.GaussianBlur(image, (0, 0), _SMOOTH_PX), dtype=np.float32))
+    slope = np.hypot(along_u, along_v).astype(np.float32)
+    return np.asarray(cv2.dilate(slope, np.ones((3, 3), np.uint8)), dtype=np.float32)
+
+
+def _clear_rim(mask: NDArray[np.uint8], head_shift: Array) -> None:
+    """Blank, in place, what one of the frames did not see, and the rim where smoothing has no neighbours."""
+    rim = int(np.ceil(np.abs(head_shift).max())) + 3
+    mask[:rim], mask[-rim:], mask[:, :rim], mask[:, -rim:] = 0, 0, 0, 0
+
+
+def _fragment_mask(change: Image, allowance: Image) -> NDArray[np.uint8]:
     """Where the change stands out: thresholded, specks opened away, neighbours closed together."""
-    mask = (np.abs(change) > _THRESHOLD_NOISES * noise).astype(np.uint8)
+    mask = (np.abs(change) > allowance).astype(np.uint8)
     mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(np.uint8)
     return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8)), dtype=np.uint8)
 

@@ -13,7 +13,7 @@ SHAPE = (300, 420)
 
 
 def moving_rover(rng, middle, step, vibration=(0.0, 0.0), light=1.0, size=(60, 110)):
-    """Two frames: a textured box at `middle` (u, v) of the second one, `step` px further than in the first."""
+    """Two frames: a textured box at `middle` (u, v) in the second one, `step` px on from the first."""
     ground = background_e(rng, SHAPE)
     skin = 0.5 * background_e(rng, size, 0.2)
 

@@ -73,7 +73,7 @@ def test_follow_up_stays_within_the_heads_limits():
 def test_overlap_ends_where_one_camera_ends():
     head = pointing_at(CHAIN, np.array([3.0, 0.0, 0.1]))
     assert in_overlap(CHAIN, head, np.array([[3.0, 0.0, 0.1], [3.0, 0.2, 0.1]]))
-    assert not in_overlap(CHAIN, head, np.array([[3.0, 0.0, 0.1], [3.0, 0.6, 0.1]]))
+    assert not in_overlap(CHAIN, head, np.array([[3.0, 0.0, 0.1], [3.0, 0.7, 0.1]]))
     with pytest.raises(ValueError, match=r"point_site_m: got shape \(2,\), expected \(3\)"):
         pointing_at(CHAIN, np.array([1.0, 2.0]))
 
