@@ -17,6 +17,7 @@ def add_terrain(client: int, terrain: Terrain) -> int:
     rows, cols = z.shape
     shape = pybullet.createCollisionShape(
         pybullet.GEOM_HEIGHTFIELD,
+        flags=pybullet.GEOM_CONCAVE_INTERNAL_EDGE,
         meshScale=[terrain.cell_m, terrain.cell_m, 1.0],
         heightfieldTextureScaling=1.0,
         heightfieldData=np.ascontiguousarray(z, dtype=np.float32).ravel().tolist(),

@@ -28,11 +28,13 @@ TRACK_MASS_KG = 0.30
 ARM_MASS_KG = 0.10
 CARRIER_MASS_KG = 0.01  # links between chassis and shoe; Bullet needs some mass to move them
 SHOE_FORCE_N = 60.0
-SHOE_TORQUE_NM = 6.0
+SHOE_TORQUE_NM = 0.1
 CABIN_TORQUE_NM = 20.0
 REBASE_M = 0.0005
 REBASE_RAD = math.radians(0.2)
 BELLY_FRICTION = 0.5
+SOLE_M = 0.002  # by how much the sole stands out from the end cylinders
+BOX_LIFT_M = 0.012
 GAINS = {"positionGain": 0.3, "velocityGain": 1.0}
 
 
@@ -299,16 +301,35 @@ def _box_shape(client: int, size_m: Vec3, centre_m: Vec3) -> int:
 
 
 def _shoe_shape(client: int, b: Belt) -> int:
-    """A stadium from three primitives: convex hulls cost five to ten times as much on a heightfield."""
-    sideways = pybullet.getQuaternionFromEuler([math.pi / 2, 0.0, 0.0])
+    """A track from primitives: convex hulls cost five to ten times as much on a heightfield.
+
+    It stands on a capsule along x, which is round all over: the lower edge of a box would catch on the
+    triangles of the ground. The end cylinders and the box, a little higher, meet rocks.
+    """
+    sole_m = b.width_m / 2
+    along = pybullet.getQuaternionFromEuler([0.0, math.pi / 2, 0.0])
+    across = pybullet.getQuaternionFromEuler([math.pi / 2, 0.0, 0.0])
+    end_m, end_x_m = b.radius_m - SOLE_M, b.length_m / 2 - b.radius_m
+    box_low_m = BOX_LIFT_M - b.radius_m
+    box = [b.flat_m / 2, b.width_m / 2, (b.radius_m - box_low_m) / 2]
     return int(
         pybullet.createCollisionShapeArray(
-            shapeTypes=[pybullet.GEOM_BOX, pybullet.GEOM_CYLINDER, pybullet.GEOM_CYLINDER],
-            halfExtents=[[b.flat_m / 2, b.width_m / 2, b.radius_m], [0.0] * 3, [0.0] * 3],
-            radii=[0.0, b.radius_m, b.radius_m],
-            lengths=[0.0, b.width_m, b.width_m],
-            collisionFramePositions=[[0.0, 0.0, 0.0], [b.flat_m / 2, 0.0, 0.0], [-b.flat_m / 2, 0.0, 0.0]],
-            collisionFrameOrientations=[[0.0, 0.0, 0.0, 1.0], sideways, sideways],
+            shapeTypes=[
+                pybullet.GEOM_CAPSULE,
+                pybullet.GEOM_CYLINDER,
+                pybullet.GEOM_CYLINDER,
+                pybullet.GEOM_BOX,
+            ],
+            halfExtents=[[0.0] * 3, [0.0] * 3, [0.0] * 3, box],
+            radii=[sole_m, end_m, end_m, 0.0],
+            lengths=[b.length_m - 2 * sole_m, b.width_m, b.width_m, 0.0],
+            collisionFramePositions=[
+                [0.0, 0.0, sole_m - b.radius_m],
+                [end_x_m, 0.0, 0.0],
+                [-end_x_m, 0.0, 0.0],
+                [0.0, 0.0, (b.radius_m + box_low_m) / 2],
+            ],
+            collisionFrameOrientations=[along, across, across, [0.0, 0.0, 0.0, 1.0]],
             physicsClientId=client,
         )
     )
