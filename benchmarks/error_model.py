@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from perception.difference import difference, led_sequence
-from perception.markers import find_markers
-from perception.psf import marker_spread
 
 from executive.rig import RigCalibration
 from executive.types import Window
+from perception.difference import difference, led_sequence
+from perception.markers import find_markers
+from perception.psf import marker_spread
 from sim_pybullet.error_model import centre_error
 from sim_pybullet.leds import Spot, add_spot
 from sim_pybullet.radiometry import Exposure, spread_sigma_px

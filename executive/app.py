@@ -17,7 +17,7 @@ from executive import plugins
 from executive.backends import BackendRequest
 from executive.classification import Classification
 from executive.clock import Stopwatch
-from executive.errors import PluginError
+from executive.errors import LongarmError, PluginError, RecordError
 from executive.expectations import judge
 from executive.journal import RunJournal
 from executive.nodes.services import Services
@@ -28,15 +28,21 @@ from executive.progress import progress_bar
 from executive.report import write_report
 from executive.runner import Run, RunEnd, execute
 from executive.scenario import ResolvedScenario, resolve_scenario
-from executive.telemetry import events
+from executive.show import draw
+from executive.telemetry import History, events
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.result import RunFigures, summarise, write_result
 from executive.tree.build import build
 from executive.tree.load import load_tree
+from executive.tree.spec import TreeSpec
 from executive.types import PoseEstimate, Segment, Source
 
 TICK_S = 1.0
 REACHED, OTHERWISE, DEFECT = 0, 1, 3
+RUN_FILES = (
+    *("scenario.yaml", "record.mcap", "truth.mcap"),
+    *("result.json", "report.html", "traceback.txt"),
+)
 PACKAGES = ("longarm", "py_trees", "numpy", "scipy", "opencv-python-headless", "pybullet")
 
 
@@ -67,11 +73,16 @@ def run(file: Path, options: RunOptions) -> Finished:
     localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
     watch = Stopwatch()
     folder = options.out or _free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
+    made = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
-    for stale in ("record.mcap", "truth.mcap", "result.json", "report.html", "traceback.txt"):
+    for stale in RUN_FILES:
         (folder / stale).unlink(missing_ok=True)
+    try:
+        end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
+    except LongarmError:
+        _unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
+        raise
     (folder / "scenario.yaml").write_text(scenario.dump())
-    end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
     if end.defect is not None:
         (folder / "traceback.txt").write_text("".join(traceback.format_exception(end.defect)))
     return _conclude(scenario, folder, end, watch)
@@ -79,7 +90,7 @@ def run(file: Path, options: RunOptions) -> Finished:
 
 def report(folder: Path) -> Path:
     """(Re)write the report of a run folder from its record."""
-    return write_report(folder)
+    return write_report(folder, _tree_svg(folder))
 
 
 def load_strategies() -> tuple[Strategy, ...]:
@@ -159,8 +170,7 @@ def _prepare(
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
-    remedies = {strategy.name: load_tree(strategy.tree) for strategy in strategies}
-    built = build(scenario.tree, services, inputs, remedies)
+    built = build(scenario.tree, services, inputs, strategy_trees(strategies))
     journal.write(
         events.Start(
             scenario.name,
@@ -202,8 +212,43 @@ def _conclude(scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stop
     result = summarise(record, truth, figures)
     result["expectations"] = judge(scenario.expect, result)
     write_result(folder / "result.json", result)
-    write_report(folder)
+    write_report(folder, _tree_svg(folder))
     return Finished(folder, json.loads((folder / "result.json").read_text()), _exit_code(end, result))
+
+
+def _unwrite(folder: Path, made: bool) -> None:
+    for name in RUN_FILES:
+        (folder / name).unlink(missing_ok=True)
+    if made:
+        folder.rmdir()
+
+
+def _tree_svg(folder: Path) -> str | None:
+    """The run's tree with its outcomes; None where the scenario no longer resolves."""
+    try:
+        drawing = draw_run(folder, "svg")
+    except LongarmError:
+        return None
+    return drawing if isinstance(drawing, str) else None
+
+
+def draw_run(folder: Path, form: str) -> str | bytes:
+    """A run's tree in one of the drawing formats, coloured by how each node last ended."""
+    if not (folder / "scenario.yaml").is_file():
+        raise RecordError(f"{folder}: got no scenario.yaml, expected a run folder")
+    scenario = resolve_scenario(folder / "scenario.yaml")
+    return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
+
+
+def last_outcomes(folder: Path) -> dict[str, str]:
+    """The status with which each node last ended, by path."""
+    changes = History.of(folder / "record.mcap").all(events.NodeChange)
+    return {at.event.path: at.event.status for at in changes if at.event.status != "invalid"}
+
+
+def strategy_trees(strategies: Sequence[Strategy]) -> dict[str, TreeSpec]:
+    """The strategies' own sub-trees by name; ConfigError with what is wrong in them."""
+    return {strategy.name: load_tree(strategy.tree) for strategy in strategies}
 
 
 def _exit_code(end: RunEnd, result: dict[str, Any]) -> int:

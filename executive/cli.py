@@ -5,14 +5,13 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import sys
 from pathlib import Path
 
 import click
 
-from executive.errors import LongarmError
+from executive.errors import ConfigError, LongarmError, Problem
 
 NOT_YET = ("test", "campaign", "import", "explain", "replay", "minimise")
 DEFECT = 3
@@ -90,10 +89,19 @@ def run(
 
     Example: longarm run missions/first_traverse.yaml --seed 3 --set "world.light.sun_elevation=20 deg"
     """
-    app = importlib.import_module("executive.app")
-    return int(
-        app.run(file, seed=seed, out=out, tier=tier, overrides=overrides, as_json=as_json, quiet=quiet)
-    )
+    from executive import app, summary
+
+    if not file.is_file():
+        raise ConfigError([Problem(str(file), 1, 1, "no such file")])
+    finished = app.run(file, app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json)))
+    if as_json:
+        click.echo(json.dumps(finished.result, indent=2))
+    elif not quiet:
+        summary.show(finished)
+    if finished.exit_code == DEFECT:
+        where = finished.folder / "traceback.txt"
+        click.echo(f"longarm: a defect: {finished.result['reason']} ({where})", err=True)
+    return finished.exit_code
 
 
 @cli.command()
@@ -103,8 +111,10 @@ def report(run_dir: Path) -> int:
 
     Example: longarm report runs/first_traverse-7
     """
-    app = importlib.import_module("executive.app")
-    return int(app.report(run_dir))
+    from executive import app
+
+    click.echo(app.report(run_dir))
+    return 0
 
 
 @cli.command()
@@ -135,10 +145,13 @@ def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
 @click.option("--format", "form", default="unicode", show_default=True, help="How to draw.")
 @click.option("-o", "--output", type=FILE, help="Write to this file instead of stdout.")
 def show(tree: str, form: str, output: Path | None) -> int:
-    """Draw a tree, by name or path: unicode, dot, svg, png, mermaid, html or groot.
+    """Draw a tree, by name or path, or a run's tree with its outcomes, by run folder.
+
+    Formats: unicode, dot, svg, png, mermaid, html, groot.
 
     Example: longarm show navigate --format svg -o navigate.svg
     """
+    from executive import app
     from executive.config.validate import guess, listed
     from executive.show import FORMATS, draw
     from executive.tree.load import load_tree
@@ -146,7 +159,11 @@ def show(tree: str, form: str, output: Path | None) -> int:
     if form not in FORMATS:
         raise click.UsageError(f'got "{form}", expected {listed(FORMATS)}{guess(form, FORMATS)}')
     path = Path(tree)
-    drawing = draw(load_tree(path if path.is_file() or "/" in tree else tree), form)
+    if (path / "record.mcap").is_file():
+        drawing = app.draw_run(path, form)
+    else:
+        spec = load_tree(path if path.is_file() or "/" in tree else tree)
+        drawing = draw(spec, form, app.strategy_trees(app.load_strategies()))
     content = drawing if isinstance(drawing, bytes) else drawing.encode()
     if output is not None:
         output.write_bytes(content)

@@ -9,11 +9,13 @@ from executive.clock import Clock
 from executive.pool import Attempt, Choice
 from executive.ports import Devices
 from executive.telemetry import events
-from executive.telemetry.pictures import picture
+from executive.telemetry.pictures import annotated, picture
 from executive.telemetry.recorder import Recorder
-from executive.types import Call, Images, PoseEstimate, Segment
+from executive.types import Call, Images, Outcome, PoseEstimate, Segment, View
 
 CAMERAS = ("left", "right")
+KEEP_EVERY = 5
+VIEW_PX = 320
 
 
 class RunJournal:
@@ -22,6 +24,7 @@ class RunJournal:
     def __init__(self, recorder: Recorder, clock: Clock, route: tuple[Segment, ...]) -> None:
         self._recorder, self._clock, self._route = recorder, clock, route
         self._attempts: Counter[str] = Counter()
+        self._looks = 0
         self._segment: Segment | None = None
         self._pose: PoseEstimate | None = None
         self.called: Call | None = None
@@ -51,6 +54,25 @@ class RunJournal:
     def assessment(self, assessment: Assessment) -> None:
         weights = {str(h): w for h, w in assessment.weights.items()}
         self.write(events.HypothesesEvent(weights, assessment.time_to_margin_s))
+
+    def views(self, views: tuple[View, ...], outcome: Outcome[object]) -> None:
+        """Keep every fifth look, and each that failed."""
+        self._looks += 1
+        if outcome.ok and self._looks % KEEP_EVERY != 1:
+            return
+        caption = outcome.detail if not outcome.ok else ""
+        for name, view in zip(CAMERAS, views, strict=False):
+            image, marks = annotated(
+                view.counts,
+                view.window,
+                name,
+                {i: (float(u), float(v)) for i, (u, v) in enumerate(view.detected_px)},
+                {i: (float(u), float(v)) for i, (u, v) in enumerate(view.reprojected_px)},
+                caption=caption,
+                longest_px=VIEW_PX,
+            )
+            self.write(image)
+            self.write(marks)
 
     def picture(self, images: Images) -> None:
         for name, counts in zip(CAMERAS, images.counts, strict=True):

@@ -26,6 +26,7 @@ from executive.types import (
     TiltReading,
     TrackReading,
     Vec2,
+    View,
 )
 
 T_co = TypeVar("T_co", covariant=True)
@@ -155,6 +156,10 @@ class Localizer(Protocol):
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
         """Measure; fails with a reason the classification can use, never with a guess."""
+        ...
+
+    def views(self) -> tuple[View, ...]:
+        """What the last localisation looked at, left and right; empty where there are no images."""
         ...
 
     def pointing(self, pose: PoseEstimate) -> Vec2:

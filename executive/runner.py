@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
@@ -36,7 +36,7 @@ class Run:
 
     root: Behaviour
     trace: Trace
-    paths: dict[str, Behaviour]
+    paths: Mapping[str, Behaviour]
     services: Services
     backend: Backend
     journal: RunJournal

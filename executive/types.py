@@ -293,6 +293,20 @@ class Centres:
     head: HeadReading
 
 
+@dataclass(frozen=True, eq=False)
+class View:
+    """What one camera showed at a localisation, for people: a patch of the frame and what was found in it.
+
+    `counts` has shape (height, width) and is the part `window` of the full frame. Centres are in pixels of
+    the full frame, one row per marker, shape (n, 2), NaN where there is none.
+    """
+
+    window: Window
+    counts: NDArray[np.float32]
+    detected_px: Array
+    reprojected_px: Array
+
+
 @dataclass(frozen=True)
 class Call:
     """A call to ground: why, and the evidence attached."""

@@ -12,6 +12,8 @@ from executive.clock import Clock
 from executive.ports import Action, Devices, LocaliseRequest
 from executive.rig import RigCalibration
 from executive.types import (
+    LEFT,
+    RIGHT,
     Centres,
     Images,
     Outcome,
@@ -23,6 +25,7 @@ from executive.types import (
     Vec2,
     Window,
 )
+from executive.types import View as Seen
 from perception.body import plc_in_body
 from perception.chain import Chain, body_transform
 from perception.difference import led_sequence
@@ -76,6 +79,16 @@ class LedStereoLocalizer:
         if request.quality is Quality.TREND:
             return Routine(self._tendency(request, deadline))
         return Routine(self._fix(request, deadline))
+
+    def views(self) -> tuple[Seen, ...]:
+        """What the last look showed; see executive.ports.Localizer."""
+        last = self.last
+        if last is None or last.windows is None or last.reference is None:
+            return ()
+        return tuple(
+            Seen(last.windows[k], last.reference[k], last.detected_px[k], last.reprojected_px[k])
+            for k in (LEFT, RIGHT)
+        )
 
     def pointing(self, pose: PoseEstimate) -> Vec2:
         """Pan and tilt [rad] that put the marker plate of this pose in the stereoscopic middle."""

@@ -11,14 +11,18 @@ from executive.clock import Clock, Stopwatch
 from executive.errors import LongarmError
 from executive.ports import Cameras, Devices
 from executive.rig import RigCalibration
+from executive.types import Point, Segment
 from sim_pybullet.cameras import make_cameras
 from sim_pybullet.chance import generator
 from sim_pybullet.config import WorldConfig
 from sim_pybullet.link import SimLink
 from sim_pybullet.sunlight import Sun
+from sim_pybullet.terrain import area_of
 from sim_pybullet.truth import TruthFile
 from sim_pybullet.world import World
 from sim_pybullet.world_faults import WorldFaults
+
+MAP_MARGIN_M = 1.0
 
 
 class TickedCameras(Cameras, Protocol):
@@ -46,6 +50,8 @@ class SimBackend:
             self.world = World(
                 request.world, request.route, request.seed, self.rig, self.clock, self._truth.write
             )
+        near = area_of((*request.route, _from_lander(request.route)), MAP_MARGIN_M)
+        self._truth.ground(self.world.terrain.crop(near.low_site_m, near.high_site_m), self.world.rocks)
         self._cameras = make(self.world, self.clock, self.rig, self._watch)
         self._link = SimLink(self.clock)
         self.world_faults = WorldFaults(self.world)
@@ -82,6 +88,11 @@ class SimBackend:
         """Release the physics and close the truth; may be called twice."""
         self.world.close()
         self._truth.close()
+
+
+def _from_lander(route: tuple[Segment, ...]) -> Segment:
+    """A line from the lander to the first way-point, so that the map shows both."""
+    return replace(route[0], start=Point(0.0, 0.0), end=route[0].start)
 
 
 def _rig_of(rig: RigCalibration, world: WorldConfig) -> RigCalibration:

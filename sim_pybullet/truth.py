@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from executive.telemetry import TruthRecorder
-from executive.telemetry.events import TruthEvent
+from executive.telemetry.events import Rock as MapRock
+from executive.telemetry.events import TerrainEvent, TruthEvent
 from executive.types import Quat, Vec3
+from sim_pybullet.scene import Rock
+from sim_pybullet.terrain import Terrain
+
+MAP_STEP_M = 0.05
 
 
 @dataclass(frozen=True)
@@ -42,6 +49,21 @@ class TruthFile:
         """Add one sample."""
         if self._recorder is not None:
             self._recorder(_event(sample), sample.time_s)
+
+    def ground(self, terrain: Terrain, rocks: Sequence[Rock]) -> None:
+        """Write the map once: elevation thinned out to what a drawing needs, and the rocks."""
+        if self._recorder is None:
+            return
+        stride = max(1, round(MAP_STEP_M / terrain.cell_m))
+        self._recorder.write(
+            TerrainEvent(
+                terrain.origin_site_m,
+                terrain.cell_m * stride,
+                terrain.elevation_m[::stride, ::stride].astype(np.float32),
+                tuple(MapRock(r.centre_site_m[0], r.centre_site_m[1], r.radius_m) for r in rocks),
+            ),
+            0.0,
+        )
 
     def flush(self) -> None:
         """Hand what was written to the operating system, so that a kill loses a tick at most."""

@@ -47,6 +47,7 @@ class Localise(ActionLeaf):
 
     def finish(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
         classification = self.services.classification
+        self.services.journal.views(self.services.localizer.views(), outcome)
         if not outcome.ok or outcome.value is None:
             self.services.journal.assessment(classification.failed(outcome))
             return outcome

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 from executive.clock import Clock
 from executive.ports import Devices, Localizer
 from executive.rig import RigCalibration
-from executive.types import Call, Images, PoseEstimate, Segment
+from executive.types import Call, Images, Outcome, PoseEstimate, Segment, View
 
 if TYPE_CHECKING:  # only named here, so that a tree can be read, checked and drawn without them
     from executive.classification import Assessment, Classification
@@ -23,6 +23,7 @@ class Journal(Protocol):
     def waypoint(self, index: int, pose: PoseEstimate) -> None: ...
     def call(self, call: Call) -> None: ...
     def assessment(self, assessment: Assessment) -> None: ...
+    def views(self, views: tuple[View, ...], outcome: Outcome[object]) -> None: ...
     def picture(self, images: Images) -> None: ...
 
 

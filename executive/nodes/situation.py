@@ -10,7 +10,7 @@ from executive.types import Outcome, Segment
 def choose(
     services: Services, segment: Segment | None, failure: Outcome[object], at_hand: frozenset[str]
 ) -> str | None:
-    """The strategy that the pool chooses among those at hand, None to call home. The rover rests meanwhile."""
+    """The strategy that the pool chooses among those at hand, None to call home. The rover rests."""
     services.devices.tracks.stop()
     pose = services.classification.predicted()
     situation = Situation(

@@ -22,7 +22,7 @@ def ground(run: Run, frame: MapFrame) -> str:
     plain = svg.element(
         "rect", x=frame.left_px, y=frame.top_px, width=frame.width_px, height=frame.height_px, fill="#efeae0"
     )
-    found = run.history.last(TerrainEvent)
+    found = run.history.last(TerrainEvent) or run.world.last(TerrainEvent)
     if found is None:
         return plain
     terrain = found.event

@@ -93,6 +93,7 @@ RECORD: tuple[Topic, ...] = (
 TRUTH: tuple[Topic, ...] = (
     _own("/truth/pose", events.TruthEvent),
     _own("/truth/fault", events.FaultEvent),
+    _own("/truth/terrain", events.TerrainEvent),
 )
 # beside an event's own topic, what viewers want of it
 TWINS: dict[type, str] = {PoseEstimate: "/pose"}

@@ -27,6 +27,7 @@ from executive.types import (
     Images,
     Outcome,
     PoseEstimate,
+    Quality,
     Reason,
     Shot,
     Source,
@@ -34,6 +35,7 @@ from executive.types import (
     TiltReading,
     TrackReading,
     Vec2,
+    View,
 )
 
 T = TypeVar("T")
@@ -270,7 +272,11 @@ class OverheadLocalizer:
         self._devices, self._rig, self._clock = devices, rig, clock
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
-        return _Located(self._devices.cameras.take(Shot(leds=(0, 1, 2, 4, 8))), self._rig)
+        source = Source.TREND if request.quality is Quality.TREND else Source.MARKERS
+        return _Located(self._devices.cameras.take(Shot(leds=(0, 1, 2, 4, 8))), self._rig, source)
+
+    def views(self) -> tuple[View, ...]:
+        return ()
 
     def pointing(self, pose: PoseEstimate) -> Vec2:
         height = self._rig.head.mast_height_m
@@ -281,6 +287,7 @@ class OverheadLocalizer:
 class _Located:
     taking: Action[Images | Centres]
     rig: RigCalibration
+    source: Source
 
     def poll(self) -> Outcome[PoseEstimate] | None:
         outcome = self.taking.poll()
@@ -309,7 +316,7 @@ class _Located:
             position_site_m=(float(x), float(y), 0.0),
             quat_site_body=quat_from_heading_tilt(heading, 0.0, 0.0),
             covariance=np.diag([sigma_m**2] * 3 + [1e-6, 1e-6, sigma_rad**2]),
-            source=Source.MARKERS,
+            source=self.source,
             markers=4,
         )
 

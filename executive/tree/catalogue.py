@@ -69,7 +69,7 @@ BUILTINS: dict[str, NodeType] = {
         NodeType(
             "loop",
             "control",
-            "Ask the first child; until it succeeds, run the second and ask again. Fails when the second does.",
+            "Ask the first child; until it succeeds, run the second and ask again; fail when that fails.",
             (),
             "two",
         ),

@@ -19,7 +19,7 @@ SEGMENT = Segment(Point(0.0, 0.0), Point(1.0, 0.0), on_track_m=0.03, off_track_m
 GAUGE_M = 0.125
 
 
-def leg(at: PoseEstimate, segment: Segment = SEGMENT, longest_m: float = 0.1):  # noqa: ANN201
+def leg(at: PoseEstimate, segment: Segment = SEGMENT, longest_m: float = 0.1):
     motion = prediction.start(at, MotionNoise())
     return guidance.plan_leg(motion, at, segment.end, segment, longest_m, GAUGE_M, GuidanceLimits())
 

@@ -10,7 +10,7 @@ from executive.hypotheses import FAILURE_CODES, PRIOR, Channel, Evidence, Hypoth
 from executive.types import Reason
 
 
-def after(channels: dict[Channel, float], weights: dict[Hypothesis, float] | None = None):  # noqa: ANN201
+def after(channels: dict[Channel, float], weights: dict[Hypothesis, float] | None = None):
     return weigh(weights or dict(PRIOR), Evidence(0.0, {c: (v, 0.0) for c, v in channels.items()}))
 
 

@@ -138,9 +138,8 @@ def test_normalised_innovation_is_consistent_when_the_model_holds() -> None:
             NOISE.heading_rad_per_sqrt_m * math.sqrt(travel),
             NOISE.heading_rad_per_sqrt_rad * math.sqrt(rotation),
         )
-        fix = pose(
-            *(np.array([x, y, heading]) + [*position, rng.normal(0, yaw)] + rng.normal(0, [1e-3, 1e-3, 2e-3]))
-        )
+        moved = np.array([x, y, heading]) + np.array([*position, rng.normal(0, yaw)])
+        fix = pose(*(moved + rng.normal(0, [1e-3, 1e-3, 2e-3])))
         predicted = prediction.predict(state, left, right, GAUGE_M, 1.0, NOISE)
         innovation, covariance = prediction.innovate(predicted, fix)
         squared.append(innovation @ np.linalg.solve(covariance, innovation))
