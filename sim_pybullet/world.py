@@ -117,6 +117,8 @@ class World:
         self.tracks.feel(forces_n, tick_s)
         self.cabin.settle()
         self.head.settle()
+        if not (self.tracks.moving or self.cabin.moving or self._asleep or self._never_sleep):
+            self._settle_down()  # what sways after a stop is the time scale's inertia, not the rover's
         self._write_truth(force=moving)
 
     def _move(self, belts_m: tuple[float, float], tick_s: float) -> tuple[float, float]:
