@@ -40,7 +40,7 @@ class ProceduralConfig(_Model):
     craters: Annotated[int, Field(ge=0, le=200)] = 0
     slope: Annotated[Angle, Field(ge=0, le=math.radians(40))] = 0.0
     slope_direction: Angle = 0.0
-    rocks: Annotated[int, Field(ge=0, le=500)] = 0
+    rocks: Annotated[int, Field(ge=0, le=500)] = 30
     width: Annotated[Length, Field(gt=1, le=40)] = 24.0
 
 
@@ -55,6 +55,13 @@ class TerrainConfig(_Model):
     added_roughness: Annotated[Length, Field(ge=0, le=0.05)] = 0.0
     rocks: Annotated[int, Field(ge=0, le=500)] = 0
     procedural: ProceduralConfig | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _procedural_by_default(cls, given: object) -> object:
+        if isinstance(given, dict) and given.get("dem") is None and given.get("procedural") is None:
+            return given | {"procedural": {}}
+        return given
 
     @model_validator(mode="after")
     def _one_kind(self) -> TerrainConfig:

@@ -34,8 +34,7 @@ STEP_S = 1 / 60
 CABIN_SCALE = 6.0  # the cabin is nearly half the mass: faster swings would throw the rover about
 SETTLED_M_S, SETTLED_RAD_S = 2e-4, 2e-3
 SETTLED_STEPS = 10
-LONGEST_SETTLING_STEPS = 600
-LONGEST_REST_STEPS = 12  # after a drive the motors lock: what still trembles then is Bullet, not the rover
+LONGEST_SETTLING_STEPS = 120
 PHYSICS_MARGIN_M = 1.2  # how much ground beyond the off-track margins is solid
 SPOOL_HEIGHT_M = 0.3
 TRUTH_EVERY_S = 60.0
@@ -83,7 +82,6 @@ class World:
         self._slips = (0.0, 0.0)
         self._pull = np.zeros(3)
         self._asleep, self._calm_steps, self._restless_steps = False, 0, 0
-        self._rolling = False
         self._last_truth_s = -TRUTH_EVERY_S
         self._frames: CabinChain | None = None
         self._settle_down()
@@ -122,18 +120,16 @@ class World:
         self.tracks.feel(forces_n, tick_s)
         self.cabin.settle()
         self.head.settle()
+        if not (self.tracks.moving or self.cabin.moving or self._asleep or self._never_sleep):
+            self.body.hold_shoes()
+            self._settle_down()  # what sways after a stop is the time scale's inertia, not the rover's
         self._write_truth(force=awake)
 
     def _move(self, belts_m: tuple[float, float], tick_s: float) -> tuple[float, float]:
         """One tick of physics; what the belts pull with at its end [N]."""
         self._frames = None
         moved = self._displacement(belts_m)
-        rolling = belts_m != (0.0, 0.0)
-        if self._rolling and not rolling:
-            self.body.hold_shoes()
-            self._restless_steps = LONGEST_SETTLING_STEPS - LONGEST_REST_STEPS
-        self._rolling = rolling
-        if rolling or self.cabin.moving:
+        if belts_m != (0.0, 0.0) or self.cabin.moving:
             self.wake()
         scale = min(self.config.time_scale, CABIN_SCALE) if self.cabin.moving else self.config.time_scale
         count = max(1, round(tick_s / scale / STEP_S))

@@ -144,7 +144,7 @@ def test_tracks_stand_on_the_ground_at_height_zero_of_the_body(world_of: WorldMa
 
 def test_bullet_holds_the_friction_of_the_soil_on_each_shoe(world_of: WorldMaker) -> None:
     """PyBullet puts link friction on the base, silently, when asked together with damping."""
-    patch = {"at": {"x": "3 m", "y": "1.06 m"}, "radius": "1 m", "soil": {"like": "bedrock"}}
+    patch = {"at": {"x": "3 m", "y": "1 m"}, "radius": "1 m", "soil": {"like": "bedrock"}}
     config = plain(soil={"like": "loose_sand"})
     config["soil"]["patches"] = [patch]
     world = world_of(config)
