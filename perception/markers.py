@@ -23,7 +23,7 @@ _MAX_STEP_PX = 0.7
 _CONVERGED_PX = 1e-4
 _MAX_WANDER_PX = 2.0
 # Second order of maximum likelihood: the centre's variance exceeds the bound by this over SNR squared
-# (measured at SNR 6 to 14 and spreads of 1.6 to 5 m: 4 to 7).
+# (measured at SNR 6 to 14 and ranges of 1.6 to 5 m: 4 to 7).
 _SECOND_ORDER = 5.0
 SIGMA_FLOOR_PX = 0.01  # what is left of lens calibration and spread model
 
