@@ -15,7 +15,9 @@ from perception.prediction import Expectation
 
 CADENCE_S = 20.0  # at track speed, some 28 mm: a tenth of the rover
 LEDS = (0, 0)
-_SILHOUETTE_SIGMA_M = 0.03  # the middle of what moved against the middle of the rover
+# The middle of what moved against the middle of the rover: its cast shadow moves along with it, and pulls
+# the middle by half the shadow's length, wherever the sun stands.
+_SILHOUETTE_SIGMA_M = 0.05
 _HEIGHT_SIGMA_M = 0.03
 _WINDOW_ROVERS = 1.5  # window margin around the prediction, in rover lengths
 
