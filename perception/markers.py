@@ -51,11 +51,17 @@ def detection_threshold(pixels: int, false_alarm_rate: float) -> float:
 
 def filter_snr(image: NDArray[np.float32], sigma: NDArray[np.float32], spread: Spread) -> NDArray[np.float32]:
     """SNR (h, w) of a marker centred at each pixel of a difference image with noise `sigma` (h, w)."""
-    kernel = spread.kernel().astype(np.float32)
+    line = spread.line().astype(np.float32)
     whitened = (image / sigma**2).astype(np.float32)
-    signal = cv2.filter2D(whitened, cv2.CV_32F, kernel, borderType=cv2.BORDER_CONSTANT)
-    power = cv2.filter2D(1.0 / sigma**2, cv2.CV_32F, kernel**2, borderType=cv2.BORDER_CONSTANT)
+    signal = _filtered(whitened, line)
+    power = _filtered((1.0 / sigma**2).astype(np.float32), line**2)
     return np.asarray(signal / np.sqrt(np.maximum(power, 1e-20)), dtype=np.float32)
+
+
+def _filtered(image: NDArray[np.float32], line: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Correlation with the outer product of `line` with itself; zero beyond the rim."""
+    out = cv2.sepFilter2D(image, cv2.CV_32F, line, line, borderType=cv2.BORDER_CONSTANT)
+    return np.asarray(out, dtype=np.float32)
 
 
 def find_markers(
