@@ -257,10 +257,11 @@ class LedStereoLocalizer:
         range_m = view_of(self._chain, expectation.state).range_m
         windows = self._windows(expectation, Try(1.0), window_margin_px(self._rig, range_m))
         shot = Shot(LEDS, windows, CADENCE_S)
+        start_s = self._clock.now_s
         taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline)
         if taken.value is None or not taken.ok:
             return Outcome(taken.reason, f"cameras: {taken.detail}")
-        pose = coarse_pose(self._chain, expectation, request.predicted, taken.value, range_m)
+        pose = coarse_pose(self._chain, expectation, request.predicted, taken.value, start_s)
         why = "" if pose is not None else "nothing moved between two frames"
         self.last = empty(
             taken.value.time_s, request.quality, len(self._chain.markers_plc_m), taken.value, 0, why

@@ -53,10 +53,13 @@ class Spread:
         result: Array = t * ndtr(t / s) + s * np.exp(-0.5 * (t / s) ** 2) / math.sqrt(2 * math.pi)
         return result
 
+    def line(self) -> Array:
+        """Shares in one axis of a marker centred on a pixel, shape (2 r + 1,)."""
+        return self.profile(np.arange(-self.radius_px, self.radius_px + 1.0))
+
     def kernel(self) -> Array:
         """Shares of a marker centred on a pixel, shape (2 r + 1, 2 r + 1)."""
-        line = self.profile(np.arange(-self.radius_px, self.radius_px + 1.0))
-        return np.outer(line, line)
+        return np.outer(self.line(), self.line())
 
     @property
     def peak(self) -> float:

@@ -9,12 +9,15 @@ import numpy as np
 from executive.rig import RigCalibration
 from executive.types import Array, Centres, Images, PoseEstimate, Source
 from perception.chain import Chain
+from perception.exposure import view_of
 from perception.motion import coarse_position, motion_fragments
 from perception.prediction import Expectation
 
-CADENCE_S = 20.0
+CADENCE_S = 20.0  # at track speed, some 28 mm: a tenth of the rover
 LEDS = (0, 0)
-_SILHOUETTE_SIGMA_M = 0.03  # the middle of what moved against the middle of the rover
+# The middle of what moved against the middle of the rover: its cast shadow moves along with it, and pulls
+# the middle by half the shadow's length, wherever the sun stands.
+_SILHOUETTE_SIGMA_M = 0.05
 _HEIGHT_SIGMA_M = 0.03
 _WINDOW_ROVERS = 1.5  # window margin around the prediction, in rover lengths
 
@@ -39,9 +42,15 @@ def centroids(rig: RigCalibration, data: Images | Centres, range_m: float) -> tu
 
 
 def coarse_pose(
-    chain: Chain, expectation: Expectation, predicted: PoseEstimate, data: Images | Centres, range_m: float
+    chain: Chain, expectation: Expectation, predicted: PoseEstimate, data: Images | Centres, start_s: float
 ) -> PoseEstimate | None:
-    """Pose with its place measured and its attitude predicted; None where no camera saw the rover move."""
+    """Pose with its place measured and its attitude predicted; None where no camera saw the rover move.
+
+    `start_s` is when the shot began: the pose is of the second frame, or of the middle between both for
+    centroids of the geometric tier.
+    """
+    range_m = view_of(chain, expectation.state).range_m
+    into_shot = 1.0 if isinstance(data, Images) else 0.5
     uv, sigma = centroids(chain.rig, data, range_m)
     if not np.isfinite(uv).all(axis=1).any():
         return None
@@ -56,7 +65,7 @@ def coarse_pose(
     covariance[:3, 3:] = covariance[3:, :3] = 0.0
     covariance[:3, :3] = head.rotation @ P @ head.rotation.T + _head_share(chain, range_m)
     return PoseEstimate(
-        time_s=data.time_s,
+        time_s=start_s + into_shot * data.shot.cadence_s,
         position_site_m=(float(x), float(y), float(z)),
         quat_site_body=predicted.quat_site_body,
         covariance=covariance,

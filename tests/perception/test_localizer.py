@@ -199,6 +199,7 @@ def test_trend_from_centroids_is_coarse_and_honest():
         off = (np.array(outcome.value.position_site_m) - r.state.site_body.position_m)[:2]
         values.append(off @ np.linalg.solve(outcome.value.covariance[:2, :2], off))
         assert 0.01 < outcome.value.sigma_position_m < 0.15
+        assert outcome.value.time_s == r.clock.now_s - 10.0
     assert np.mean(values) < 3.0
 
 
