@@ -121,7 +121,7 @@ class PatchConfig(_Model):
 class SoilsConfig(_Model):
     """What the ground is made of; later patches cover earlier ones."""
 
-    default: AnySoil = "crust"
+    default: AnySoil = "loose_sand"
     patches: tuple[PatchConfig, ...] = ()
 
 
@@ -150,7 +150,7 @@ class ObstacleConfig(_Model):
 class WorldConfig(_Model):
     """The world of a scenario."""
 
-    terrain: TerrainConfig = TerrainConfig()
+    terrain: TerrainConfig = TerrainConfig.model_validate({})
     soil: SoilsConfig = SoilsConfig()
     light: LightConfig = LightConfig()
     mast_height: Annotated[Length, Field(gt=0, le=5)] | None = None
