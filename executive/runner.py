@@ -71,7 +71,8 @@ def _loop(run: Run) -> RunEnd:
         with watch.measure("record"):
             changes.write()
             if run.services.clock.ticks % sample_ticks == 0:
-                run.journal.telemetry(now, run.backend.devices)
+                predicted = run.services.classification.predicted()
+                run.journal.telemetry(now, run.backend.devices, predicted)
             run.recorder.flush()
         if run.root.status is not Status.RUNNING:
             return _ended(run)

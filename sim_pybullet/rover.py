@@ -28,8 +28,8 @@ TRACK_MASS_KG = 0.30
 ARM_MASS_KG = 0.10
 CARRIER_MASS_KG = 0.01  # links between chassis and shoe; Bullet needs some mass to move them
 SHOE_FORCE_N = 60.0
-# Weak on purpose: on rough ground the two tracks go paths of different length, and the chassis must be free to
-# turn on its shoes by that, else they pull against each other up to sliding. Measured: below 0.1 the shoes
+# Weak on purpose: on rough ground the two tracks go paths of different length, and the chassis must be
+# free to turn on its shoes by that, else they pull against each other up to sliding. Measured: below 0.1 the shoes
 # wander on cross slopes, above 1 the paths differ between time scales.
 SHOE_TORQUE_NM = 0.25
 CABIN_TORQUE_NM = 20.0
