@@ -29,8 +29,8 @@ ARM_MASS_KG = 0.10
 CARRIER_MASS_KG = 0.01  # links between chassis and shoe; Bullet needs some mass to move them
 SHOE_FORCE_N = 60.0
 # Weak on purpose: on rough ground the two tracks go paths of different length, and the chassis must be
-# free to turn on its shoes by that, else they pull against each other up to sliding. Measured: below 0.1 the shoes
-# wander on cross slopes, above 1 the paths differ between time scales.
+# free to turn on its shoes by that, else they pull against each other up to sliding. Measured: below 0.1
+# the shoes wander on cross slopes, above 1 the paths differ between time scales.
 SHOE_TORQUE_NM = 0.25
 CABIN_TORQUE_NM = 20.0
 REBASE_M = 0.0005
@@ -128,13 +128,6 @@ class RoverBody:
             velocityGains=[GAINS["velocityGain"]] * 6,
             physicsClientId=self.client,
         )
-
-    def hold_shoes(self) -> None:
-        """Make the shoes' places their setpoints: motors at rest are locked, they do not catch up."""
-        for side, setpoint in enumerate(self._setpoints):
-            joints = [TRACK_JOINTS[side] + k for k in (YAW, SIDE, BELT)]
-            states = pybullet.getJointStates(self.id, joints, physicsClientId=self.client)
-            setpoint.yaw_rad, setpoint.side_m, setpoint.belt_m = (state[0] for state in states)
 
     def _rebase(self, side: int) -> None:
         """Put the shoe back under the chassis where it has gone too far, keeping the lag along x and y."""
