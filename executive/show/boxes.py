@@ -12,6 +12,7 @@ SYMBOLS = {
     "selector": "?",
     "parallel": "⇉",
     "inverter": "¬",
+    "loop": "↺",
     "retry": "↻",
     "repeat": "⟳",
     "for_each": "∀",
