@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,9 +22,7 @@ EVEN_SOIL = {"yaw_scatter": "0 %", "slip_scatter": "0 %"}
 def route(*points: tuple[float, float]) -> tuple[Segment, ...]:
     """Segments through these points [m], with ordinary margins."""
     ends = [Point(*p) for p in points]
-    return tuple(
-        Segment(a, b, 0.03, 0.25, 0.03, i) for i, (a, b) in enumerate(zip(ends, ends[1:], strict=False))
-    )
+    return tuple(Segment(a, b, 0.03, 0.25, 0.03, i) for i, (a, b) in enumerate(pairwise(ends)))
 
 
 AHEAD = route((3.0, 0.0), (4.0, 0.0))
