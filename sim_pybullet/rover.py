@@ -4,9 +4,9 @@ Bullet's contacts bear it (height, roll, pitch, rocks, a grounded belly). What t
 servo along x, y and about z that can push no harder than the tracks grip: Coulomb's law with an anchor. So it
 neither creeps at rest nor scrubs in turns, and where it cannot push, the anchor slips.
 
-Two other ways were measured and left. Wheels creep on slopes. Shoes standing still on the ground, carrying the
-chassis over it, hold on a plane; but on rough ground such contacts are statically indeterminate, their inner
-forces grow up to sliding, and the rover walks about and believes itself blocked.
+Two other ways were measured and left. Wheels creep on slopes. Shoes standing still on the ground, carrying
+the chassis over it, hold on a plane; but on rough ground such contacts are statically indeterminate, their
+inner forces grow up to sliding, and the rover walks about and believes itself blocked.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class RoverBody:
         for joint, value in zip((X, Y, YAW, Z, PITCH, ROLL), (x, y, yaw, z, pitch, roll), strict=True):
             pybullet.resetJointState(self.id, joint, float(value), physicsClientId=client)
         self._anchor = [x, y, float(yaw)]
-        self._force_site_n = (0.0, 0.0, 0.0)
+        self._force_site = (0.0, 0.0, 0.0)
         self.hold_cabin(0.0, 0.0)
 
     def _friction(self) -> None:
@@ -93,14 +93,14 @@ class RoverBody:
         states = pybullet.getJointStates(self.id, PLANE, physicsClientId=self.client)
         for k, (state, lag) in enumerate(zip(states, LONGEST_LAG, strict=True)):
             self._anchor[k] = state[0] + min(lag, max(-lag, self._anchor[k] - state[0]))
-        self._force_site_n = (float(states[0][3]), float(states[1][3]), float(states[2][3]))
+        self._force_site = (float(states[0][3]), float(states[1][3]), float(states[2][3]))
         pybullet.setJointMotorControlArray(
             self.id,
             PLANE,
             pybullet.POSITION_CONTROL,
             targetPositions=self._anchor,
             targetVelocities=rate.values(),
-            forces=[*self._shares(grip.force_n), grip.torque_nm],
+            forces=self._limits(grip),
             positionGains=[GAINS["positionGain"]] * 3,
             velocityGains=[GAINS["velocityGain"]] * 3,
             physicsClientId=self.client,
@@ -108,36 +108,52 @@ class RoverBody:
         for k, speed in enumerate(rate.values()):
             self._anchor[k] += speed * step_s
 
-    def _shares(self, force_n: float) -> tuple[float, float]:
-        """The grip as limits along x and y: where it is reached, the two must make a circle, not a square."""
-        fx, fy, _ = self._force_site_n
-        total_n = math.hypot(fx, fy)
-        if total_n < 0.9 * force_n:
-            return force_n, force_n
-        return force_n * max(0.05, abs(fx) / total_n), force_n * max(0.05, abs(fy) / total_n)
+    def _limits(self, grip: Grip) -> tuple[float, float, float]:
+        """The grip as limits of the three servos.
+
+        Far from it they do not matter. Near it they must shrink together: pushes along x and y make a circle,
+        and what the tracks spend on turning they lack for pushing (each has its own share of the grip).
+        """
+        fx, fy, torque_nm = (abs(f) for f in self._force_site)
+        force_n = math.hypot(fx, fy)
+        spent = force_n / grip.force_n + torque_nm / grip.torque_nm
+        if spent < 0.9:
+            return grip.force_n, grip.force_n, grip.torque_nm
+        free = 0.05  # of the grip, left to each so that it can come back
+        return (
+            max(free * grip.force_n, fx / spent),
+            max(free * grip.force_n, fy / spent),
+            max(free * grip.torque_nm, torque_nm / spent),
+        )
 
     def traction(self) -> tuple[float, float]:
-        """What the left and the right belt push with, forward positive, in the last step [N]."""
+        """What the left and the right belt push with along the ground, forward positive [N]."""
         fx, fy, torque_nm = (
             float(s[3]) for s in pybullet.getJointStates(self.id, PLANE, physicsClientId=self.client)
         )
-        heading = pybullet.getJointState(self.id, YAW, physicsClientId=self.client)[0]
-        ahead_n = fx * math.cos(heading) + fy * math.sin(heading)
+        ahead = self.pose()[1][:2, 0]  # its length is the cosine of the pitch: servos push horizontally
+        ahead_n = fx * float(ahead[0]) + fy * float(ahead[1])
         turning_n = torque_nm / self.rig.rover.track_gauge_m
         return ahead_n / 2 - turning_n, ahead_n / 2 + turning_n
 
     def loads(self) -> tuple[float, float]:
-        """What presses the left and the right shoe on ground and rocks, in the last step [N]."""
-        left, right = (
-            sum(
-                float(c[9])
-                for c in pybullet.getContactPoints(
-                    bodyA=self.id, linkIndexA=shoe, physicsClientId=self.client
-                )
-            )
-            for shoe in SHOES
-        )
+        """What presses the soles of the left and the right shoe on ground and rocks [N].
+
+        A rock in front of a shoe does not press its sole.
+        """
+        up = self.pose()[1][:, 2].tolist()
+        left, right = (self._pressed(shoe, up) for shoe in SHOES)
         return left, right
+
+    def _pressed(self, shoe: int, up_site: list[float]) -> float:
+        contacts = pybullet.getContactPoints(bodyA=self.id, linkIndexA=shoe, physicsClientId=self.client)
+        return sum(
+            (
+                float(c[9]) * max(0.0, sum(n * u for n, u in zip(c[7], up_site, strict=True)))
+                for c in contacts
+            ),
+            0.0,
+        )
 
     def hold_cabin(self, arm_rad: float, cabin_rad: float) -> None:
         """Drive the arm and cabin joints to these angles."""

@@ -38,6 +38,7 @@ LONGEST_SETTLING_STEPS = 240
 PHYSICS_MARGIN_M = 1.2  # how much ground beyond the off-track margins is solid
 SPOOL_HEIGHT_M = 0.3
 TRUTH_EVERY_S = 60.0
+LEAST_GRIP = 0.02  # of the weight: even with its belly on a rock some grouser drags
 STILL = PlaneRate()
 
 
@@ -152,9 +153,15 @@ class World:
         return displacement(belts_m, (left, right), load, efficiency, self.rig.rover.track_gauge_m)
 
     def _gripping(self, grounds: tuple[TrackGround, TrackGround]) -> Grip:
-        """What the tracks can push with under the load that they bear now; less where the belly bears some."""
-        limits_n = [traction_limit(g.soil, n) for g, n in zip(grounds, self.body.loads(), strict=True)]
-        return Grip(sum(limits_n), sum(limits_n) * self.rig.rover.track_gauge_m / 2)
+        """What the tracks can push with under the load that they bear now; less where the belly bears some.
+
+        The servos push horizontally and take the ground's normal force as it is, hence the cosine: the rover
+        must slide where the tangent of the slope, not its sine, exceeds the friction.
+        """
+        level = float(self.body.pose()[1][2, 2])
+        limits_n = (traction_limit(g.soil, n) for g, n in zip(grounds, self.body.loads(), strict=True))
+        force_n = max(sum(limits_n) * level, LEAST_GRIP * self.weight_n)
+        return Grip(force_n, force_n * self.rig.rover.track_gauge_m / 2)
 
     def _sides(self) -> tuple[float, float]:
         half_m = self.rig.rover.track_gauge_m / 2

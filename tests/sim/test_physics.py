@@ -129,6 +129,15 @@ def test_current_rises_against_a_rock(world_of: WorldMaker) -> None:
     assert np.mean(currents[-8:-1]) > 2 * np.mean(currents[5:50])
 
 
+def test_rover_grounded_on_a_stone_gets_no_further_though_its_tracks_turn(world_of: WorldMaker) -> None:
+    """A stone between the tracks takes the load off them, so the motors do not feel it."""
+    world = world_of(plain(soil="crust", obstacles=[rock_ahead(0.0, 0.05)]))
+    start, _ = world.body.pose()
+    outcome = drive(world, 0.3, 0.3)
+    assert outcome.value.left_m > 0.15
+    assert world.body.pose()[0][0] - start[0] < 0.15
+
+
 def test_rover_backs_off_from_a_rock(world_of: WorldMaker) -> None:
     world = world_of(plain(soil="crust", obstacles=[rock_ahead(0.0)]))
     assert drive(world, 0.5, 0.5).reason is Reason.BLOCKED
