@@ -78,7 +78,7 @@ def test_turning_has_the_efficiency_of_the_soil(world_of: WorldMaker, soil: str)
 
 
 def test_path_does_not_depend_on_the_time_scale(world_of: WorldMaker) -> None:
-    """Under 5 mm a metre between scales 10 and 50, on rough ground with scatter, through turns."""
+    """Under 5 mm a metre between scales 10 and 50, on rough ground, through turns, with scatter."""
     paths = []
     for scale in (10, 50):
         world = world_of(plain(roughness="8 mm", soil="loose_sand", time_scale=scale))
