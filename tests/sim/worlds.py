@@ -33,11 +33,7 @@ def plain(
 ) -> dict[str, Any]:
     """A `world:` mapping: procedural ground that rises along x, the rover looking along x."""
     return {
-<<<<<<< HEAD
         "terrain": {"procedural": {"roughness": roughness, "slope": slope, "width": "12 m", "rocks": 0}},
-=======
-        "terrain": {"procedural": {"roughness": roughness, "slope": slope, "rocks": 0, "width": "12 m"}},
->>>>>>> sim
         "soil": {"default": soil},
         "start": {"heading": "0 deg", "position_error": "0 mm"},
         **world,
