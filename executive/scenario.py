@@ -12,7 +12,6 @@ from pydantic import BaseModel
 
 from executive import plugins
 from executive.backends import BackendSpec
-from executive.config.fault_entries import ResolvedFault, fault_entries
 from executive.config.find import find, portable, shown
 from executive.config.mission import mission_problems
 from executive.config.models import Expect, MissionFile, ScenarioFile
@@ -22,6 +21,7 @@ from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
 from executive.errors import ConfigError
+from executive.fault_entries import ResolvedFault, fault_entries
 from executive.rig import RigCalibration
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
