@@ -7,7 +7,6 @@ import math
 import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +31,7 @@ from executive.show import draw
 from executive.telemetry import History, events
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.result import RunFigures, summarise, write_result
+from executive.telemetry.versions import versions
 from executive.tree.build import build
 from executive.tree.load import load_tree
 from executive.tree.spec import TreeSpec
@@ -43,7 +43,6 @@ RUN_FILES = (
     *("scenario.yaml", "record.mcap", "truth.mcap"),
     *("result.json", "report.html", "traceback.txt"),
 )
-PACKAGES = ("longarm", "py_trees", "numpy", "scipy", "opencv-python-headless", "pybullet")
 
 
 @dataclass(frozen=True)
@@ -178,7 +177,7 @@ def _prepare(
             scenario.seed,
             TICK_S,
             scenario.tier,
-            {package: version(package) for package in PACKAGES},
+            versions(),
         )
     )
     journal.write(events.RouteEvent(route))
