@@ -52,11 +52,18 @@ def execute(run: Run) -> RunEnd:
     end = RunEnd("error", "the run was interrupted")
     try:
         end = _loop(run)
+    except KeyboardInterrupt:
+        end = RunEnd("safe_hold", "interrupted by the operator")
     except Exception as defect:
-        end = RunEnd("error", _one_line(defect), defect)
+        end = ended_by(defect)
     finally:
         end = _rest(run, end)
     return end
+
+
+def ended_by(defect: BaseException) -> RunEnd:
+    """The end of a run that a defect cut short."""
+    return RunEnd("error", _one_line(defect), defect)
 
 
 def _loop(run: Run) -> RunEnd:
@@ -106,8 +113,10 @@ def _rest(run: Run, end: RunEnd) -> RunEnd:
     for step in steps:
         try:
             step()
+        except KeyboardInterrupt:
+            continue  # the rest has priority over whoever is in a hurry
         except Exception as defect:
-            end = RunEnd("error", _one_line(defect), end.defect or defect)
+            end = RunEnd("error", _one_line(end.defect or defect), end.defect or defect)
     return end
 
 

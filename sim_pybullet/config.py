@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from executive.units import Acceleration, Angle, Fraction, Length, Pressure
 from sim_pybullet.soil import SOILS, Soil
@@ -55,6 +55,13 @@ class TerrainConfig(_Model):
     added_roughness: Annotated[Length, Field(ge=0, le=0.05)] = 0.0
     rocks: Annotated[int, Field(ge=0, le=500)] = 0
     procedural: ProceduralConfig | None = None
+
+    @field_validator("dem")
+    @classmethod
+    def _seen_from_its_file(cls, dem: Path | None, info: ValidationInfo) -> Path | None:
+        """A relative path starts from the file that says it; absolute from here on."""
+        folder = (info.context or {}).get("folder", Path())
+        return None if dem is None else (folder / dem).absolute()
 
     @model_validator(mode="before")
     @classmethod
