@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from executive import plugins
 from executive.backends import BackendSpec
-from executive.config.fault_entries import ResolvedFault, fault_entries
+from executive.config.fault_entries import ResolvedFault, Setting, fault_entries
 from executive.config.find import find, portable, shown
 from executive.config.mission import mission_problems
 from executive.config.models import Expect, MissionFile, ScenarioFile
@@ -105,7 +105,8 @@ def resolve(source: Source) -> ResolvedScenario:
     backend = problems.attempt(lambda: _backend(source, backend_name))
     world = problems.attempt(lambda: _world(source, backend)) if backend else None
     rig = problems.attempt(lambda: rig_from(source, ("rig",)))
-    faults = problems.attempt(lambda: fault_entries(source, ("faults",)))
+    setting = _setting(source, backend_name)
+    faults = problems.attempt(lambda: fault_entries(source, ("faults",), setting))
     tree_path = problems.attempt(lambda: _tree_path(source))
     tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
     inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
@@ -154,6 +155,14 @@ def _with_value(source: Source, key: str, value: int | str | None) -> Source:
 def _text(source: Source, key: str, default: str) -> str:
     value = source.data.get(key, default) if isinstance(source.data, dict) else default
     return value if isinstance(value, str) else default
+
+
+def _setting(source: Source, backend: str) -> Setting:
+    """What faults must fit, as far as the file says it; what is wrong with that is told elsewhere."""
+    mission = source.data.get("mission") if isinstance(source.data, dict) else None
+    points = mission.get("waypoints") if isinstance(mission, dict) else None
+    tier = _text(source, "tier", str(ScenarioFile.model_fields["tier"].default))
+    return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
 
 
 def _backend(source: Source, name: str) -> BackendSpec:

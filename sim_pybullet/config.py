@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from executive.units import Acceleration, Angle, Fraction, Length, Pressure
 from sim_pybullet.soil import SOILS, Soil
@@ -62,6 +63,13 @@ class TerrainConfig(_Model):
         if isinstance(given, dict) and given.get("dem") is None and given.get("procedural") is None:
             return given | {"procedural": {}}
         return given
+
+    @field_validator("dem")
+    @classmethod
+    def _from_its_file(cls, dem: Path | None, info: ValidationInfo) -> Path | None:
+        """Relative to the file that names it."""
+        folder = (info.context or {}).get("folder")
+        return dem if dem is None or folder is None else Path(os.path.normpath(folder / dem))
 
     @model_validator(mode="after")
     def _one_kind(self) -> TerrainConfig:
