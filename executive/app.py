@@ -18,10 +18,11 @@ from executive.classification import Classification
 from executive.clock import Stopwatch
 from executive.errors import ConfigError, LongarmError, PluginError, Problem, RecordError
 from executive.expectations import judge
+from executive.fault_schedule import FaultSchedule
 from executive.journal import RunJournal
 from executive.nodes.services import Services
 from executive.pool import Pool, Strategy
-from executive.ports import Backend, Localizer
+from executive.ports import Backend, Devices, Localizer
 from executive.prediction import quat_from_heading_tilt
 from executive.progress import progress_bar
 from executive.report import write_report
@@ -31,6 +32,7 @@ from executive.show import draw
 from executive.telemetry import History, events
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.result import RunFigures, summarise, write_result
+from executive.telemetry.versions import versions
 from executive.tree.build import build
 from executive.tree.load import load_tree
 from executive.tree.spec import TreeSpec
@@ -192,11 +194,14 @@ def _prepare(
 ) -> Run:
     route = scenario.mission.route()
     journal = RunJournal(recorder, backend.clock, route)
+    faults = FaultSchedule(scenario.faults, backend)
+    journal.hear = faults.sightings.hear
+    devices = faults.wrap(backend.devices)
     services = Services(
         clock=backend.clock,
-        devices=backend.devices,
+        devices=devices,
         rig=backend.rig,
-        localizer=_localizer(make_localizer, backend),
+        localizer=_localizer(make_localizer, devices, backend),
         classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
         pool=Pool(strategies, journal.strategy),
         journal=journal,
@@ -213,13 +218,15 @@ def _prepare(
         recorder=recorder,
         stopwatch=watch,
         time_limit_s=scenario.time_limit_s,
+        each_tick=lambda: faults.tick(journal, route),
+        invalid=lambda: faults.conclude(journal),
     )
 
 
-def _localizer(make: object, backend: Backend) -> Localizer:
+def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:
     if not callable(make):
         raise PluginError(f"got a localizer {make!r}, expected something to call")
-    made: Localizer = make(devices=backend.devices, rig=backend.rig, clock=backend.clock)
+    made: Localizer = make(devices=devices, rig=backend.rig, clock=backend.clock)
     return made
 
 
@@ -287,6 +294,8 @@ def strategy_trees(strategies: Sequence[Strategy]) -> dict[str, TreeSpec]:
 def _exit_code(end: RunEnd, result: dict[str, Any]) -> int:
     if end.outcome == "error":
         return DEFECT
+    if end.outcome == "invalid":
+        return OTHERWISE
     if result["expectations"]:
         return REACHED if all(row["met"] for row in result["expectations"]) else OTHERWISE
     return REACHED if end.outcome == "reached" else OTHERWISE

@@ -2,25 +2,52 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from executive.config.validate import Strict
+from executive.ports import Backend, Devices
 from executive.units import Duration, Fraction
+
+
+class Fault:
+    """One injected fault. Override `wrap` for a fault of the ports, `apply` for one of the world, or both."""
+
+    def wrap(self, devices: Devices, active: Callable[[], bool]) -> Devices:
+        """The devices as the executive shall see them; what is wrapped asks `active` whenever it is used."""
+        return devices
+
+    def apply(self, backend: Backend, active: bool) -> None:
+        """Change the world at the onset, and back at the end."""
+
+    def took_effect(self) -> bool:
+        """Evidence: whether anything has gone otherwise because of it since its onset.
+
+        A fault of the world has by its onset alone; one of the ports once an answer was altered.
+        """
+        return True
 
 
 @dataclass(frozen=True)
 class FaultSpec:
-    """A kind of fault: its parameters' schema, and where it can act (empty: everywhere)."""
+    """A kind of fault: its parameters' schema, how to make one, the diagnosis it should lead to.
+
+    `make` is given an instance of `model`. `backends` and `tiers` say where it can act (empty: everywhere).
+    A `lasting` fault cannot be taken back, so that `for` is refused.
+    """
 
     name: str
     doc: str
     model: type[BaseModel]
+    make: Callable[[Any], Fault]
+    hypothesis: str
     backends: tuple[str, ...] = ()
     tiers: tuple[str, ...] = ()
+    lasting: bool = False
 
 
 class Trigger(Strict):

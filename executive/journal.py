@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 
 from executive.classification import Assessment, Telemetry
 from executive.clock import Clock
@@ -27,12 +28,14 @@ class RunJournal:
         self._looks = 0
         self._segment: Segment | None = None
         self._pose: PoseEstimate | None = None
+        self.hear: Callable[[object], None] = lambda event: None
         self.called: Call | None = None
         self.reached = 0
 
     def write(self, event: object) -> None:
         """Write any event of the record at the present mission time."""
         self._recorder.write(event, self._clock.now_s)
+        self.hear(event)
 
     def estimate(self, pose: PoseEstimate) -> None:
         self._pose = pose

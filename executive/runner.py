@@ -45,6 +45,8 @@ class Run:
     time_limit_s: float
     progress: Callable[[RunJournal, float], None] = lambda journal, now_s: None
     each_tick: Callable[[], None] = lambda: None
+    invalid: Callable[[], str | None] = lambda: None
+    """Asked at the end: why the run proves nothing, None if it does."""
 
 
 def execute(run: Run) -> RunEnd:
@@ -52,6 +54,8 @@ def execute(run: Run) -> RunEnd:
     end = RunEnd("error", "the run was interrupted")
     try:
         end = _loop(run)
+        if why := run.invalid():
+            end = RunEnd("invalid", f"{why}; the run ended {end.outcome}")
     except KeyboardInterrupt:
         end = RunEnd("safe_hold", "interrupted by the operator")
     except Exception as defect:
@@ -71,7 +75,7 @@ def _loop(run: Run) -> RunEnd:
     limit_ticks = run.services.clock.ticks_for(run.time_limit_s)
     sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
     while True:
-        now = run.services.classification.sense(run.backend.devices)
+        now = run.services.classification.sense(run.services.devices)
         run.each_tick()
         with watch.measure("tick"):
             run.root.tick_once()
@@ -79,7 +83,7 @@ def _loop(run: Run) -> RunEnd:
             changes.write()
             if run.services.clock.ticks % sample_ticks == 0:
                 predicted = run.services.classification.predicted()
-                run.journal.telemetry(now, run.backend.devices, predicted)
+                run.journal.telemetry(now, run.services.devices, predicted)
             run.recorder.flush()
         if run.root.status is not Status.RUNNING:
             return _ended(run)

@@ -21,7 +21,7 @@ from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
 from executive.errors import ConfigError, Problem
-from executive.fault_entries import ResolvedFault, fault_entries
+from executive.fault_entries import ResolvedFault, Setting, fault_entries
 from executive.rig import RigCalibration
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
@@ -106,7 +106,8 @@ def resolve(source: Source) -> ResolvedScenario:
     problems.attempt(lambda: _check_localizer(source))
     world = problems.attempt(lambda: _world(source, backend)) if backend else None
     rig = problems.attempt(lambda: rig_from(source, ("rig",)))
-    faults = problems.attempt(lambda: fault_entries(source, ("faults",)))
+    setting = _setting(source, backend_name)
+    faults = problems.attempt(lambda: fault_entries(source, ("faults",), setting))
     tree_path = problems.attempt(lambda: _tree_path(source))
     tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
     inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
@@ -158,6 +159,14 @@ def _with_value(source: Source, key: str, value: int | str | None) -> Source:
 def _text(source: Source, key: str, default: str) -> str:
     value = source.data.get(key, default) if isinstance(source.data, dict) else default
     return value if isinstance(value, str) else default
+
+
+def _setting(source: Source, backend: str) -> Setting:
+    """What faults must fit, as far as the file says it; what is wrong with that is told elsewhere."""
+    mission = source.data.get("mission") if isinstance(source.data, dict) else None
+    points = mission.get("waypoints") if isinstance(mission, dict) else None
+    tier = _text(source, "tier", str(ScenarioFile.model_fields["tier"].default))
+    return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
 
 
 def _check_known(source: Source, what: str, group: str, name: str) -> None:

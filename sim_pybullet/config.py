@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -69,6 +70,13 @@ class TerrainConfig(_Model):
         if isinstance(given, dict) and given.get("dem") is None and given.get("procedural") is None:
             return given | {"procedural": {}}
         return given
+
+    @field_validator("dem")
+    @classmethod
+    def _from_its_file(cls, dem: Path | None, info: ValidationInfo) -> Path | None:
+        """Relative to the file that names it."""
+        folder = (info.context or {}).get("folder")
+        return dem if dem is None or folder is None else Path(os.path.normpath(folder / dem))
 
     @model_validator(mode="after")
     def _one_kind(self) -> TerrainConfig:

@@ -55,12 +55,13 @@ class World:
         truth: TruthSink = lambda sample: None,
         never_sleep: bool = False,
     ) -> None:
-        self.config, self.rig, self.clock = config, rig, clock
+        self.config, self.rig, self.clock, self.route = config, rig, clock, route
         self._truth, self._never_sleep = truth, never_sleep
         self.terrain = make_terrain(config.terrain, route, seed)
         self.soils = make_soils(config, seed)
         self.rocks = list(make_rocks(config, self.terrain, route, rig, seed))
         self.led_alive, self.led_factor = [True] * 4, [1.0] * 4
+        self.extra_slip = 0.0
         self.steps = 0
         self._client = _connect(config.gravity)
         area = area_of(route, PHYSICS_MARGIN_M)
@@ -173,7 +174,7 @@ class World:
     def _ground(self, at_site_m: Array) -> TrackGround:
         x, y = float(at_site_m[0]), float(at_site_m[1])
         soil = self.soils.at(x, y)
-        return TrackGround(soil, self.soils.slip_scatter(soil, x, y), self._contact_m)
+        return TrackGround(soil, self.soils.slip_scatter(soil, x, y) + self.extra_slip, self._contact_m)
 
     def _step(self, rate: PlaneRate) -> None:
         self.body.command(rate, self._grip, STEP_S)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from executive.types import Vec2
+from sim_pybullet.path import ahead_on
 from sim_pybullet.rocks import obstacle
 from sim_pybullet.scene import Rock
 from sim_pybullet.soil import Patch
@@ -25,6 +27,15 @@ class WorldFaults:
     def set_track_factor(self, side: int, factor: float) -> None:
         """Let a motor turn `factor` times as fast as commanded."""
         self._world.tracks.speed_factors[side] = factor
+
+    def set_slip(self, slip: float) -> None:
+        """Let this share of all belt travel be lost, on top of what the ground takes."""
+        self._world.extra_slip = slip
+
+    def ahead_on_path(self, ahead_m: float, aside_m: float = 0.0) -> Vec2:
+        """The point of the planned path this far ahead of where the rover truly is, in `site`."""
+        position, _ = self._world.body.pose()
+        return ahead_on(self._world.route, (float(position[0]), float(position[1])), ahead_m, aside_m)
 
     def add_soil(self, patch: Patch) -> None:
         """Lay a patch of other soil over everything so far."""

@@ -9,7 +9,7 @@ MODULE = """
 from pydantic import BaseModel, ConfigDict, Field
 from typing import Annotated
 from executive.backends import BackendSpec
-from executive.faults import FaultSpec
+from executive.faults import Fault, FaultSpec
 from executive.units import Angle, Length, Fraction
 
 class Light(BaseModel):
@@ -21,14 +21,17 @@ class World(BaseModel):
     light: Light = Light()
     mast_height: Annotated[Length, Field(gt=0)] = 1.5
 
-class LedOff(BaseModel):
+class LampOff(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
     marker: Annotated[int, Field(ge=0, le=3)]
     depth: Fraction = 1.0
 
 BACKEND = BackendSpec("plain", "A backend for tests.", World, ("full", "geometric"), lambda request: None)
 POOR = BackendSpec("poor", "A backend without images.", World, ("geometric",), lambda request: None)
-LED_OFF = FaultSpec("led_off", "A marker goes out.", LedOff)
+LAMP_OFF = FaultSpec("lamp_off", "A lamp goes out.", LampOff, lambda lamp: Fault(), "marker_lost")
+DAYLIGHT = FaultSpec(
+    "daylight", "Too bright.", LampOff, lambda lamp: Fault(), "poor_view", ("plain",), ("full",), lasting=True
+)
 """
 
 POINTS = """
@@ -37,7 +40,8 @@ plain = third_party_plugin:BACKEND
 poor = third_party_plugin:POOR
 broken = third_party_plugin:MISSING
 [longarm.faults]
-led_off = third_party_plugin:LED_OFF
+lamp_off = third_party_plugin:LAMP_OFF
+daylight = third_party_plugin:DAYLIGHT
 """
 
 
@@ -72,7 +76,7 @@ seed: 7
 backend: plain
 world: {light: {sun_elevation: 35 deg}}
 faults:
-  - led_off: {marker: 2}
+  - lamp_off: {marker: 2}
     from: {progress: 40 %}
     for: 20 min
 expect:

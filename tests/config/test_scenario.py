@@ -84,7 +84,7 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
     (folder / "scenarios" / "dark.yaml").write_text(
         "scenario: dark\nmission: short\nseed: -1\ntier: ful\nbackend: plain\n"
         "world: {light: {sun_elevaton: 35 deg}, mast_height: 30}\n"
-        "faults:\n  - led_of: {marker: 2}\n  - led_off: {marker: 7}\n    from: {time: 3 m}\n"
+        "faults:\n  - lamp_of: {marker: 2}\n  - lamp_off: {marker: 7}\n    from: {time: 3 m}\n"
         "expect: {outcome: reachd, always: tilt}\ntimelimit: 3 h\n"
     )
     assert problems_of("scenarios/dark.yaml") == [
@@ -93,8 +93,9 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
         'scenarios/dark.yaml:6:17: got the unknown key "sun_elevaton", expected sun_elevation; '
         'did you mean "sun_elevation"?',
         "scenarios/dark.yaml:6:53: got 30 without a unit, expected a length such as '30 mm'",
-        'scenarios/dark.yaml:8:5: got the unknown fault "led_of", expected led_off; did you mean "led_off"?',
-        "scenarios/dark.yaml:9:23: got 7, expected less than or equal to 3",
+        'scenarios/dark.yaml:8:5: got the unknown fault "lamp_of", expected daylight, encoder_scale, '
+        'frozen_frame, lamp_off, led_dim, led_off, rock_on_path, slip_burst or track_weak; did you mean "lamp_off"?',  # noqa: E501
+        "scenarios/dark.yaml:9:24: got 7, expected less than or equal to 3",
         "scenarios/dark.yaml:10:18: got '3 m' (a length), expected a duration such as '36 s'",
         'scenarios/dark.yaml:11:19: got "reachd", expected reached, safe_hold, help or time_limit; '
         'did you mean "reached"?',
@@ -175,6 +176,34 @@ def test_temporal_logic_is_refused_as_not_there_yet(folder):
 def test_a_fault_starts_in_exactly_one_way(folder, trigger, message):
     path = rewritten(folder, "{progress: 40 %}", trigger)
     assert message in problems_of(path)[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        ("{progress: 40 %}", '{when: "tilt > 5 deg"}',
+         "scenarios/dark.yaml:8:12: `when` is not judged yet; expected one of time, progress, waypoint, node or strategy"),  # noqa: E501
+        ("{progress: 40 %}", "{waypoint: 3}",
+         "scenarios/dark.yaml:8:22: got way-point 3, expected 0 to 2"),
+        ("{progress: 40 %}", "{strategy: back_of}",
+         'scenarios/dark.yaml:8:22: got the unknown strategy "back_of", expected back_off'),
+        ("lamp_off: {", "led_off: {",
+         "scenarios/dark.yaml:7:5: got led_off with the backend plain, which it cannot act in; expected pybullet"),  # noqa: E501
+        ("lamp_off: {", "daylight: {",
+         "scenarios/dark.yaml:9:5: got a duration of daylight, which cannot be taken back; expected no `for`"),  # noqa: E501
+    ],
+)  # fmt: skip
+def test_a_fault_that_cannot_act_is_refused_where_it_says_so(folder, old, new, problem):
+    (told,) = problems_of(rewritten(folder, old, new))
+    assert told.startswith(problem)
+
+
+def test_a_fault_of_another_tier_is_refused(folder):
+    path = rewritten(folder, "lamp_off: {", "daylight: {")
+    told = problems_of(path, tier="geometric")
+    assert told[0] == (
+        "scenarios/dark.yaml:7:5: got daylight with the tier geometric, which it cannot act in; expected full"
+    )
 
 
 def test_files_of_the_working_folder_come_before_the_installed_ones(tmp_path, monkeypatch):
