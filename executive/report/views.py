@@ -44,7 +44,8 @@ def views(run: Run) -> Figure | None:
     caption = (
         f"{len(chosen)} of the {len(found)} pictures kept, left and right camera side by side, contrast "
         "stretched. Full frames are taken at way-points, read-out windows at localisations. A circle is a "
-        "marker found in the difference images, a blue dot where the estimated pose would put it: the two should meet."
+        "marker found in the difference images, a blue dot where the estimated pose would put it: the two "
+        "should meet."
     )
     return Figure(
         "views", "Through the cameras", legend(entries) + f"<div class='views'>{pairs}</div>", caption
