@@ -9,9 +9,12 @@ from executive import plugins
 from executive.backends import BackendRequest
 from executive.errors import LongarmError
 from executive.faults import FaultSpec
+from executive.ports import LocaliseRequest
+from executive.prediction import quat_from_heading_tilt
 from executive.rig import RigCalibration
 from executive.testing.fake import FakeBackend, FakeWorld
-from executive.types import Images, Point, Segment, Shot
+from executive.types import Point, PoseEstimate, Quality, Segment, Source
+from perception.localizer import LedStereoLocalizer
 from sim_pybullet import BACKEND
 from sim_pybullet.config import WorldConfig
 from sim_pybullet.path import ahead_on
@@ -50,25 +53,26 @@ def finish(backend, action):
     return outcome
 
 
-def seen(backend):
-    """For each marker, whether the left camera tells it from the dark frame."""
-    devices = backend.devices
-    finish(backend, devices.head.point(0.0, math.radians(25.0)))
-    answer = finish(backend, devices.cameras.take(Shot((0, 1, 2, 4, 8)))).value
-    if isinstance(answer, Images):
-        left = answer.counts[0].astype(float)
-        return [bool((left[1 + marker] - left[0]).max() > 100.0) for marker in range(4)]
-    return [bool(np.isfinite(answer.uv_px[0, marker]).all()) for marker in range(4)]
+def markers_found(backend, localizer):
+    """How many markers a precise localisation of the rover where it stands rests on."""
+    position, _ = backend.world.body.pose()
+    covariance = np.diag([0.02**2] * 3 + [0.05**2] * 3)
+    quat = quat_from_heading_tilt(0.0, 0.0, 0.0)
+    prior = PoseEstimate(backend.clock.now_s, tuple(position), quat, covariance, Source.PRIOR)
+    fix = finish(backend, localizer.locate(LocaliseRequest(Quality.PRECISE, prior)))
+    assert fix.ok, fix
+    return fix.value.markers
 
 
 @pytest.mark.parametrize("tier", ["full", "geometric"])
 def test_a_marker_that_is_off_is_not_seen_until_it_is_back(backend_of, tier):
     backend, fault = backend_of(tier), make("led_off", marker=2)
-    assert seen(backend) == [True, True, True, True]
+    localizer = LedStereoLocalizer(backend.devices, backend.rig, backend.clock)
+    assert markers_found(backend, localizer) == 4
     fault.apply(backend, True)
-    assert seen(backend) == [True, True, False, True]
+    assert markers_found(backend, localizer) == 3
     fault.apply(backend, False)
-    assert seen(backend) == [True, True, True, True]
+    assert markers_found(backend, localizer) == 4
 
 
 def test_a_dim_marker_emits_its_share(backend_of):
