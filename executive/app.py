@@ -7,7 +7,6 @@ import math
 import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from executive import plugins
 from executive.backends import BackendRequest
 from executive.classification import Classification
 from executive.clock import Stopwatch
-from executive.errors import LongarmError, PluginError, RecordError
+from executive.errors import ConfigError, LongarmError, PluginError, Problem, RecordError
 from executive.expectations import judge
 from executive.fault_schedule import FaultSchedule
 from executive.journal import RunJournal
@@ -27,12 +26,13 @@ from executive.ports import Backend, Devices, Localizer
 from executive.prediction import quat_from_heading_tilt
 from executive.progress import progress_bar
 from executive.report import write_report
-from executive.runner import Run, RunEnd, execute
+from executive.runner import Run, RunEnd, ended_by, execute
 from executive.scenario import ResolvedScenario, resolve_scenario
 from executive.show import draw
 from executive.telemetry import History, events
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.result import RunFigures, summarise, write_result
+from executive.telemetry.versions import versions
 from executive.tree.build import build
 from executive.tree.load import load_tree
 from executive.tree.spec import TreeSpec
@@ -44,7 +44,6 @@ RUN_FILES = (
     *("scenario.yaml", "record.mcap", "truth.mcap"),
     *("result.json", "report.html", "traceback.txt"),
 )
-PACKAGES = ("longarm", "py_trees", "numpy", "scipy", "opencv-python-headless", "pybullet")
 
 
 @dataclass(frozen=True)
@@ -68,25 +67,32 @@ class Finished:
 
 
 def run(file: Path, options: RunOptions) -> Finished:
-    """Run a scenario or mission file. ConfigError and PluginError come before anything is written."""
+    """Run a scenario or mission file. What a user can mend leaves nothing behind that was not there.
+
+    A defect ends the run, not the folder: record, result and report are complete and `traceback.txt` tells.
+    """
     scenario = resolve_scenario(file, options.seed, options.tier, options.overrides)
     strategies = load_strategies()
     localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
     watch = Stopwatch()
     folder = options.out or _free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
-    folder.mkdir(parents=True, exist_ok=True)
+    _make_folder(folder)
     for stale in RUN_FILES:
         (folder / stale).unlink(missing_ok=True)
+    (folder / "scenario.yaml").write_text(scenario.dump())  # first, so that a run cut off can be repeated
     try:
         end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
     except LongarmError:
         _unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
         raise
-    (folder / "scenario.yaml").write_text(scenario.dump())
     if end.defect is not None:
-        (folder / "traceback.txt").write_text("".join(traceback.format_exception(end.defect)))
-    return _conclude(scenario, folder, end, watch)
+        _write_traceback(folder, end.defect)
+    try:
+        return _conclude(scenario, folder, end, watch)
+    except Exception as defect:
+        _write_traceback(folder, defect)
+        raise
 
 
 def report(folder: Path) -> Path:
@@ -134,21 +140,48 @@ def _execute(
         truth_path=folder / "truth.mcap",
         tick_s=TICK_S,
     )
+    with Recorder(folder / "record.mcap") as recorder:
+        _write_start(recorder, scenario)
+        try:
+            prepared = _set_up(scenario, strategies, localizer, request, recorder, watch)
+        except LongarmError:
+            raise
+        except Exception as defect:  # a plug-in that cannot even be made
+            end = ended_by(defect)
+            recorder.write(events.Stop(end.outcome, end.reason), 0.0)
+            return end
+        with progress_bar(scenario.name, sum(s.length_m for s in route), bar) as progress:
+            prepared.progress = progress
+            end = execute(prepared)
+    for part, spent in prepared.backend.wall_s().items():
+        watch.spent_s[part] += spent
+    return end
+
+
+def _write_start(recorder: Recorder, scenario: ResolvedScenario) -> None:
+    start = events.Start(scenario.name, scenario.dump(), scenario.seed, TICK_S, scenario.tier, versions())
+    recorder.write(start, 0.0)
+    recorder.write(events.RouteEvent(scenario.mission.route()), 0.0)
+    recorder.flush()
+
+
+def _set_up(
+    scenario: ResolvedScenario,
+    strategies: tuple[Strategy, ...],
+    localizer: object,
+    request: BackendRequest,
+    recorder: Recorder,
+    watch: Stopwatch,
+) -> Run:
+    """The robot and all that drives it; what fails half way leaves the robot at rest and released."""
     with watch.measure("setup"):
         backend = scenario.backend.create(request)
     try:
-        recorder = Recorder(folder / "record.mcap")
-        prepared = _prepare(scenario, strategies, localizer, backend, recorder, watch)
-        length_m = sum(s.length_m for s in route)
-        with progress_bar(scenario.name, length_m, bar) as progress:
-            prepared.progress = progress
-            end = execute(prepared)
-    finally:
+        return _prepare(scenario, strategies, localizer, backend, recorder, watch)
+    except BaseException:
         backend.safe_stop()
         backend.close()
-    for part, spent in backend.wall_s().items():
-        watch.spent_s[part] += spent
-    return end
+        raise
 
 
 def _prepare(
@@ -175,17 +208,6 @@ def _prepare(
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
     built = build(scenario.tree, services, inputs, strategy_trees(strategies))
-    journal.write(
-        events.Start(
-            scenario.name,
-            scenario.dump(),
-            scenario.seed,
-            TICK_S,
-            scenario.tier,
-            {package: version(package) for package in PACKAGES},
-        )
-    )
-    journal.write(events.RouteEvent(route))
     return Run(
         root=built.root,
         trace=built.trace,
@@ -220,6 +242,18 @@ def _conclude(scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stop
     write_result(folder / "result.json", result)
     write_report(folder, _tree_svg(folder))
     return Finished(folder, json.loads((folder / "result.json").read_text()), _exit_code(end, result))
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"got {folder}: {error.strerror}, expected a folder that can be written to"
+        raise ConfigError([Problem("--out", 1, 1, message)]) from None
+
+
+def _write_traceback(folder: Path, defect: BaseException) -> None:
+    (folder / "traceback.txt").write_text("".join(traceback.format_exception(defect)))
 
 
 def _unwrite(folder: Path, made: bool) -> None:

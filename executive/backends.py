@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
+from executive.config.source import Place
 from executive.ports import Backend
 from executive.rig import RigCalibration
 from executive.types import Segment
@@ -31,11 +32,28 @@ class BackendRequest:
 
 
 @dataclass(frozen=True)
+class WorldProblem:
+    """Why a well-formed world cannot be made; `place` are the keys, seen from `world`, that say so."""
+
+    place: Place
+    message: str
+
+
+def no_problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldProblem, ...]:
+    """The `problems` of a backend that can make every world its schema allows."""
+    return ()
+
+
+@dataclass(frozen=True)
 class BackendSpec:
-    """A backend by name: its world's schema, the tiers it can play, and how to make one."""
+    """A backend by name: its world's schema, the tiers it can play, and how to make one.
+
+    `problems` tells, before anything is made or written, why a world cannot be made for a route.
+    """
 
     name: str
     doc: str
     world_model: type[BaseModel]
     tiers: tuple[str, ...]
     create: Callable[[BackendRequest], Backend]
+    problems: Callable[[BaseModel, tuple[Segment, ...]], tuple[WorldProblem, ...]] = no_problems

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 
-from executive.errors import ConfigError, LongarmError, Problem
+from executive.errors import LongarmError
 
 NOT_YET = ("test", "campaign", "import", "explain", "replay", "minimise")
 DEFECT = 3
@@ -29,7 +29,8 @@ def invoke(arguments: list[str]) -> int:
     except click.exceptions.Exit as error:
         return error.exit_code
     except click.exceptions.Abort:
-        return 2
+        click.echo("longarm: interrupted", err=True)
+        return 1
     except click.ClickException as error:
         error.show()
         return 2
@@ -66,7 +67,7 @@ FILE = click.Path(path_type=Path)
 
 @cli.command()
 @click.argument("file", type=FILE)
-@click.option("--seed", type=click.IntRange(0), help="Replace the scenario's seed.")
+@click.option("--seed", type=int, help="Replace the scenario's seed.")
 @click.option("--out", type=FILE, help="Where to write the run folder.")
 @click.option(
     "--tier", type=click.Choice(["full", "geometric"]), help="Images, or their measured error model."
@@ -91,8 +92,6 @@ def run(
     """
     from executive import app, summary
 
-    if not file.is_file():
-        raise ConfigError([Problem(str(file), 1, 1, "no such file")])
     finished = app.run(file, app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json)))
     if as_json:
         click.echo(json.dumps(finished.result, indent=2))

@@ -39,6 +39,14 @@ class RecordError(LongarmError):
     """A run folder lacks what was asked of it, or its record cannot be read."""
 
 
+class StrategyRaised(Exception):
+    """A strategy's own code raised: a defect of the plug-in, named."""
+
+    def __init__(self, name: str, cause: BaseException) -> None:
+        self.name = name
+        super().__init__(f"needs of {name}: {type(cause).__name__}: {cause}")
+
+
 class NodeRaised(Exception):
     """A leaf raised: a defect, contained. `path` names the node from the root."""
 

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from executive.config.fault_entries import ResolvedFault
+from executive.fault_entries import ResolvedFault
 from executive.faults import Fault, Trigger
 from executive.journal import RunJournal
 from executive.ports import Backend, Devices

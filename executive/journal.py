@@ -90,8 +90,10 @@ class RunJournal:
         verdict = events.Verdict.HELPED if note.helped else events.Verdict.FAILED
         self.write(self._strategy_event(note.strategy, note.hypothesis, note.weight, verdict, ""))
 
-    def telemetry(self, now: Telemetry, devices: Devices) -> None:
-        """One sample of all that is read continuously."""
+    def telemetry(self, now: Telemetry, devices: Devices, predicted: PoseEstimate) -> None:
+        """One sample of all that is read continuously, and of where the rover should be by it."""
+        if now.tracks.moving:
+            self.write(predicted.on(self._segment))
         cabin, head = devices.cabin.read(), devices.head.read()
         self.write(
             events.Telemetry(

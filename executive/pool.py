@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from executive.classification import Assessment
+from executive.errors import StrategyRaised
 from executive.hypotheses import Hypothesis
 from executive.types import CabinReading, Outcome, PoseEstimate, Reason, Segment
 
@@ -188,7 +189,10 @@ class Pool:
         tries = [a for a in tries if segment is None or a.segment == segment.index]
         if len(tries) >= strategy.tries_per_segment:
             return f"tried {len(tries)} times on this segment"
-        return strategy.needs(situation)
+        try:
+            return strategy.needs(situation)
+        except Exception as error:
+            raise StrategyRaised(strategy.name, error) from error
 
     def _tried_here(self, name: str, segment: Segment | None, along_m: float | None) -> bool:
         return any(

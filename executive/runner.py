@@ -56,11 +56,18 @@ def execute(run: Run) -> RunEnd:
         end = _loop(run)
         if why := run.invalid():
             end = RunEnd("invalid", f"{why}; the run ended {end.outcome}")
+    except KeyboardInterrupt:
+        end = RunEnd("safe_hold", "interrupted by the operator")
     except Exception as defect:
-        end = RunEnd("error", _one_line(defect), defect)
+        end = ended_by(defect)
     finally:
         end = _rest(run, end)
     return end
+
+
+def ended_by(defect: BaseException) -> RunEnd:
+    """The end of a run that a defect cut short."""
+    return RunEnd("error", _one_line(defect), defect)
 
 
 def _loop(run: Run) -> RunEnd:
@@ -75,7 +82,8 @@ def _loop(run: Run) -> RunEnd:
         with watch.measure("record"):
             changes.write()
             if run.services.clock.ticks % sample_ticks == 0:
-                run.journal.telemetry(now, run.services.devices)
+                predicted = run.services.classification.predicted()
+                run.journal.telemetry(now, run.services.devices, predicted)
             run.recorder.flush()
         if run.root.status is not Status.RUNNING:
             return _ended(run)
@@ -109,8 +117,10 @@ def _rest(run: Run, end: RunEnd) -> RunEnd:
     for step in steps:
         try:
             step()
+        except KeyboardInterrupt:
+            continue  # the rest has priority over whoever is in a hurry
         except Exception as defect:
-            end = RunEnd("error", _one_line(defect), end.defect or defect)
+            end = RunEnd("error", _one_line(end.defect or defect), end.defect or defect)
     return end
 
 

@@ -12,7 +12,6 @@ from pydantic import BaseModel
 
 from executive import plugins
 from executive.backends import BackendSpec
-from executive.config.fault_entries import ResolvedFault, Setting, fault_entries
 from executive.config.find import find, portable, shown
 from executive.config.mission import mission_problems
 from executive.config.models import Expect, MissionFile, ScenarioFile
@@ -21,7 +20,8 @@ from executive.config.rig_overrides import rig_fields, rig_from
 from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
-from executive.errors import ConfigError
+from executive.errors import ConfigError, Problem
+from executive.fault_entries import ResolvedFault, Setting, fault_entries
 from executive.rig import RigCalibration
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
@@ -101,8 +101,9 @@ def resolve(source: Source) -> ResolvedScenario:
     """The same from data already read."""
     problems = Problems()
     file = problems.attempt(lambda: parse(source, ScenarioFile))
-    backend_name = _text(source, "backend", "pybullet")
+    backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
     backend = problems.attempt(lambda: _backend(source, backend_name))
+    problems.attempt(lambda: _check_localizer(source))
     world = problems.attempt(lambda: _world(source, backend)) if backend else None
     rig = problems.attempt(lambda: rig_from(source, ("rig",)))
     setting = _setting(source, backend_name)
@@ -111,10 +112,13 @@ def resolve(source: Source) -> ResolvedScenario:
     tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
     inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
     if file is not None:
-        problems.found.extend(mission_problems(source, ("mission",), file.mission))
+        impossible = list(mission_problems(source, ("mission",), file.mission))
+        problems.found.extend(impossible)
         problems.found.extend(_not_yet(source))
         if backend is not None:
             problems.attempt(lambda: _check_tier(source, file.tier, backend))
+        if backend is not None and world is not None and not impossible:
+            problems.found.extend(_world_problems(source, backend, world, file.mission))
     problems.check()
     if file is None or backend is None or world is None or rig is None or tree is None or tree_path is None:
         raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
@@ -165,11 +169,20 @@ def _setting(source: Source, backend: str) -> Setting:
     return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
 
 
-def _backend(source: Source, name: str) -> BackendSpec:
-    known = sorted(plugins.found(plugins.BACKENDS))
+def _check_known(source: Source, what: str, group: str, name: str) -> None:
+    known = sorted(plugins.found(group))
     if name not in known:
-        message = f"got {shown_data(name)}, expected a backend: {listed(known)}{guess(name, known)}"
-        raise ConfigError([source.at(("backend",)).problem(message)])
+        message = f"got {shown_data(name)}, expected a {what}: {listed(known)}{guess(name, known)}"
+        raise ConfigError([source.at((what,)).problem(message)])
+
+
+def _check_localizer(source: Source) -> None:
+    default = str(ScenarioFile.model_fields["localizer"].default)
+    _check_known(source, "localizer", plugins.LOCALIZERS, _text(source, "localizer", default))
+
+
+def _backend(source: Source, name: str) -> BackendSpec:
+    _check_known(source, "backend", plugins.BACKENDS, name)
     spec = plugins.load(plugins.BACKENDS, name, BackendSpec)
     assert isinstance(spec, BackendSpec)  # noqa: S101  (load has checked)
     return spec
@@ -179,6 +192,13 @@ def _world(source: Source, backend: BackendSpec) -> BaseModel:
     if not isinstance(source.data, dict) or "world" not in source.data:
         source = source.graft(("world",), Source({}, {(): source.at(())}, folders={(): source.folder()}))
     return parse(source, backend.world_model, ("world",))
+
+
+def _world_problems(
+    source: Source, backend: BackendSpec, world: BaseModel, mission: MissionFile
+) -> list[Problem]:
+    found = backend.problems(world, mission.route())
+    return [source.at(("world", *problem.place)).problem(problem.message) for problem in found]
 
 
 def _tree_path(source: Source) -> Path | None:

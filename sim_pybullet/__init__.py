@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from executive.backends import BackendRequest, BackendSpec
+from pydantic import BaseModel
+
+from executive.backends import BackendRequest, BackendSpec, WorldProblem
 from executive.ports import Backend
+from executive.types import Segment
 from sim_pybullet.config import WorldConfig
 
 __all__ = ["BACKEND"]
@@ -16,10 +19,17 @@ def _create(request: BackendRequest) -> Backend:
     return create(request)
 
 
+def _problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldProblem, ...]:
+    from sim_pybullet.world_check import world_problems
+
+    return world_problems(world, route)
+
+
 BACKEND = BackendSpec(
     name="pybullet",
     doc="The rover, the ground and the lander's head in PyBullet, with images in linear radiometry.",
     world_model=WorldConfig,
     tiers=("full", "geometric"),
     create=_create,
+    problems=_problems,
 )

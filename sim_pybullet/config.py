@@ -57,6 +57,13 @@ class TerrainConfig(_Model):
     rocks: Annotated[int, Field(ge=0, le=500)] = 0
     procedural: ProceduralConfig | None = None
 
+    @field_validator("dem")
+    @classmethod
+    def _seen_from_its_file(cls, dem: Path | None, info: ValidationInfo) -> Path | None:
+        """A relative path starts from the file that says it; absolute from here on."""
+        folder = (info.context or {}).get("folder", Path())
+        return None if dem is None else (folder / dem).absolute()
+
     @model_validator(mode="before")
     @classmethod
     def _procedural_by_default(cls, given: object) -> object:

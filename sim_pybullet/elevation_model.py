@@ -50,7 +50,7 @@ def read_model(path: Path, cell_m: float | None = None) -> ElevationModel:
     if not path.is_file():
         raise TerrainError(f"no such elevation model: {path}")
     if path.suffix.lower() == ".npy":
-        heights, tagged = np.load(path, allow_pickle=False), None
+        heights, tagged = _read_npy(path), None
     elif path.suffix.lower() in (".tif", ".tiff"):
         heights, tagged = _read_tiff(path)
     else:
@@ -67,6 +67,14 @@ def read_model(path: Path, cell_m: float | None = None) -> ElevationModel:
     return ElevationModel(np.flipud(np.asarray(heights, dtype=np.float64)), float(cell))
 
 
+def _read_npy(path: Path) -> Array:
+    try:
+        heights: Array = np.asarray(np.load(path, allow_pickle=False), dtype=np.float64)
+    except (ValueError, TypeError, EOFError, OSError) as error:
+        raise TerrainError(f"{path}: not a readable array of numbers: {error}") from error
+    return heights
+
+
 def _read_tiff(path: Path) -> tuple[Array, float | None]:
     try:
         with tifffile.TiffFile(path) as tiff:
@@ -77,7 +85,7 @@ def _read_tiff(path: Path) -> tuple[Array, float | None]:
             if hole is not None:
                 heights[heights == float(hole.value)] = np.nan
             return heights, None if tag is None else _square_cell(path, tag.value)
-    except tifffile.TiffFileError as error:
+    except (tifffile.TiffFileError, ValueError, OSError) as error:
         raise TerrainError(f"{path}: not a readable TIFF: {error}") from error
 
 
@@ -99,15 +107,9 @@ def cut(
     `lander_m` is the lander's place from the window's lower left corner, in model metres; by default 2 m in,
     half way up. `scale` enlarges all three axes alike. TerrainError if the window leaves the model.
     """
-    w = window or Window(0.0, 0.0, min(model.size_m))
+    w = window_on(model, window)
     size = model.size_m
-    slack = 1e-9 + model.cell_m  # a window of the whole width may count the last cell in full
-    if w.x_m < 0 or w.y_m < 0 or w.x_m + w.width_m > size[0] + slack or w.y_m + w.width_m > size[1] + slack:
-        raise TerrainError(
-            f"the window x {w.x_m:.2f}..{w.x_m + w.width_m:.2f} m, y {w.y_m:.2f}..{w.y_m + w.width_m:.2f} m "
-            f"leaves the elevation model of {size[0]:.2f} x {size[1]:.2f} m"
-        )
-    lander = lander_m or (DEFAULT_LANDER_X_M, w.width_m / 2)
+    lander = lander_m or default_lander_m(w)
     count = math.ceil(w.width_m * scale / cell_m) + 1
     step_m = w.width_m / (count - 1)
     axis = np.arange(count) * step_m
@@ -118,6 +120,24 @@ def cut(
     z = spline(np.minimum(w.y_m + axis, size[1]), np.minimum(w.x_m + axis, size[0]))
     origin = (-lander[0] * scale, -lander[1] * scale)
     return levelled(Terrain(np.ascontiguousarray(z) * scale, origin, step_m * scale))
+
+
+def window_on(model: ElevationModel, window: Window | None) -> Window:
+    """The window asked for, or the largest square; TerrainError if it leaves the model."""
+    w = window or Window(0.0, 0.0, min(model.size_m))
+    size = model.size_m
+    slack = 1e-9 + model.cell_m  # a window of the whole width may count the last cell in full
+    if w.x_m < 0 or w.y_m < 0 or w.x_m + w.width_m > size[0] + slack or w.y_m + w.width_m > size[1] + slack:
+        raise TerrainError(
+            f"the window x {w.x_m:.2f}..{w.x_m + w.width_m:.2f} m, y {w.y_m:.2f}..{w.y_m + w.width_m:.2f} m "
+            f"leaves the elevation model of {size[0]:.2f} x {size[1]:.2f} m"
+        )
+    return w
+
+
+def default_lander_m(window: Window) -> Vec2:
+    """Where the lander stands unless told: 2 m in from the left, half way up [m from the lower left]."""
+    return DEFAULT_LANDER_X_M, window.width_m / 2
 
 
 def roughen(terrain: Terrain, roughness_m: float, rng: np.random.Generator) -> Terrain:

@@ -1,9 +1,12 @@
-"""The rover as a Bullet multibody: chassis, two belt shoes on three joints each, arm and cabin.
+"""The rover as a Bullet multibody: it lies free on the ground, and its tracks hold and carry it in the plane.
 
-PyBullet cannot give a contact surface a velocity. So each track is a shoe that stands still on the ground
-while its joints carry the chassis over it: along x (belt travel), along y (drift on cross slopes) and about z
-(turning). Where the shoe has moved a little way it is put back under the chassis. The contacts stay static,
-hence the rover neither creeps on slopes nor scrubs in turns, and what it cannot push slides by Coulomb's law.
+Bullet's contacts bear it (height, roll, pitch, rocks, a grounded belly). What the tracks do in the plane is a
+servo along x, y and about z that can push no harder than the tracks grip: Coulomb's law with an anchor. So it
+neither creeps at rest nor scrubs in turns, and where it cannot push, the anchor slips.
+
+Two other ways were measured and left. Wheels creep on slopes. Shoes standing still on the ground, carrying
+the chassis over it, hold on a plane; but on rough ground such contacts are statically indeterminate, their
+inner forces grow up to sliding, and the rover walks about and believes itself blocked.
 """
 
 from __future__ import annotations
@@ -12,61 +15,50 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from executive.rig import RigCalibration
 from executive.types import Array, Quat, Vec3
 from sim_pybullet.bullet import pybullet
 from sim_pybullet.shape import ARM_THICKNESS_M, Belt, arm, belt, cabin, chassis
 
-YAW, SIDE, BELT = 0, 1, 2  # joints of a track, from the chassis outwards
-TRACK_JOINTS = (0, 3)  # first joint of the left and the right track
-SHOES = (2, 5)
-ARM_JOINT, CABIN_JOINT = 6, 7
-CHASSIS_LINK = -1
+X, Y, YAW, Z, PITCH, ROLL = range(6)  # the joints from the site to the body, in this order
+BODY_LINK, LEFT_SHOE, RIGHT_SHOE, ARM_LINK, CABIN_LINK = ROLL, 6, 7, 8, 9
+PLANE = (X, Y, YAW)
+FREE = (Z, PITCH, ROLL)
+SHOES = (LEFT_SHOE, RIGHT_SHOE)
 
 TRACK_MASS_KG = 0.30
 ARM_MASS_KG = 0.10
-CARRIER_MASS_KG = 0.01  # links between chassis and shoe; Bullet needs some mass to move them
-SHOE_FORCE_N = 60.0
-# Weak on purpose: on rough ground the two tracks go paths of different length, and the chassis must be free to
-# turn on its shoes by that, else they pull against each other up to sliding. Measured: below 0.1 the shoes
-# wander on cross slopes, above 1 the paths differ between time scales.
-SHOE_TORQUE_NM = 0.25
+CARRIER_MASS_KG = 0.002  # links between site and body; Bullet needs some mass to move them
 CABIN_TORQUE_NM = 20.0
-REBASE_M = 0.0005
-REBASE_RAD = math.radians(0.2)
+# How far the body may be from its anchor [m, m, rad]; further, and the tracks have slipped.
+LONGEST_LAG = (0.0005, 0.0005, math.radians(0.2))
+TILT_DAMPING = 0.3  # [N m s] of roll and pitch: soil swallows what would rock for long
 BELLY_FRICTION = 0.5
-SOLE_M = 0.002  # by how much the sole stands out from the end cylinders
+SOLE_M = 0.002  # by how much a shoe's sole stands out from its end cylinders
 BOX_LIFT_M = 0.012
 GAINS = {"positionGain": 0.3, "velocityGain": 1.0}
 
 
-@dataclass
-class ShoeSetpoint:
-    """Where a shoe's joints should be relative to the chassis: about z [rad], along y and x [m]."""
+@dataclass(frozen=True)
+class PlaneRate:
+    """How the anchor moves in physics time, in `site`: along x and y [m/s], about z [rad/s]."""
 
-    yaw_rad: float = 0.0
-    side_m: float = 0.0
-    belt_m: float = 0.0
+    x_m_s: float = 0.0
+    y_m_s: float = 0.0
+    yaw_rad_s: float = 0.0
 
     def values(self) -> tuple[float, float, float]:
-        return self.yaw_rad, self.side_m, self.belt_m
+        return self.x_m_s, self.y_m_s, self.yaw_rad_s
 
 
 @dataclass(frozen=True)
-class TrackMotion:
-    """How fast one shoe moves against the chassis in physics time: about z [rad/s], along y and x [m/s]."""
+class Grip:
+    """What both tracks together can push with: in any direction of the plane [N], about z [N m]."""
 
-    yaw_rad_s: float = 0.0
-    side_m_s: float = 0.0
-    belt_m_s: float = 0.0
-
-    def values(self) -> tuple[float, float, float]:
-        return self.yaw_rad_s, self.side_m_s, self.belt_m_s
-
-    @property
-    def still(self) -> bool:
-        return self.yaw_rad_s == 0.0 and self.side_m_s == 0.0 and self.belt_m_s == 0.0
+    force_n: float
+    torque_nm: float
 
 
 class RoverBody:
@@ -74,91 +66,99 @@ class RoverBody:
 
     def __init__(self, client: int, rig: RigCalibration, position_site_m: Vec3, quat_site_body: Quat) -> None:
         self.client, self.rig = client, rig
-        self._chassis_z_m = chassis(rig.rover).centre_m[2]
-        self._setpoints = (ShoeSetpoint(), ShoeSetpoint())
-        self._friction = [0.0, 0.0]
-        self.id = _build(client, rig, self._chassis_position(position_site_m, quat_site_body), quat_site_body)
-        pybullet.changeDynamics(self.id, -1, linearDamping=0.0, angularDamping=0.0, physicsClientId=client)
-        pybullet.changeDynamics(self.id, -1, lateralFriction=BELLY_FRICTION, physicsClientId=client)
-        for side in (0, 1):
-            self.set_friction(side, 0.8)
+        self.id = _build(client, rig)
+        self._friction()
+        yaw, pitch, roll = Rotation.from_quat(quat_site_body).as_euler("ZYX")
+        x, y, z = position_site_m
+        for joint, value in zip((X, Y, YAW, Z, PITCH, ROLL), (x, y, yaw, z, pitch, roll), strict=True):
+            pybullet.resetJointState(self.id, joint, float(value), physicsClientId=client)
+        self._anchor = [x, y, float(yaw)]
+        self._force_site = (0.0, 0.0, 0.0)
         self.hold_cabin(0.0, 0.0)
-        self.command((TrackMotion(), TrackMotion()))
 
-    def _chassis_position(self, position_site_m: Vec3, quat_site_body: Quat) -> Vec3:
-        up = np.array(pybullet.getMatrixFromQuaternion(quat_site_body)).reshape(3, 3)[:, 2]
-        x, y, z = np.array(position_site_m) + self._chassis_z_m * up
-        return float(x), float(y), float(z)
+    def _friction(self) -> None:
+        for link in range(pybullet.getNumJoints(self.id, physicsClientId=self.client)):
+            # Alone in its call: beside damping arguments Bullet would put it on the base, silently.
+            friction = 0.0 if link in SHOES else BELLY_FRICTION
+            pybullet.changeDynamics(self.id, link, lateralFriction=friction, physicsClientId=self.client)
+        for joint in FREE:
+            damping = TILT_DAMPING if joint != Z else 0.0
+            pybullet.changeDynamics(self.id, joint, jointDamping=damping, physicsClientId=self.client)
+            pybullet.setJointMotorControl2(
+                self.id, joint, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=self.client
+            )
 
-    def set_friction(self, side: int, friction: float) -> None:
-        """Coulomb friction of one track on the ground; does nothing if it has that value."""
-        if abs(friction - self._friction[side]) < 1e-6:
-            return
-        # Alone in its call: beside damping arguments Bullet would put it on the base, silently.
-        pybullet.changeDynamics(self.id, SHOES[side], lateralFriction=friction, physicsClientId=self.client)
-        self._friction[side] = friction
-
-    def friction(self, side: int) -> float:
-        """What Bullet itself holds as one track's friction."""
-        return float(pybullet.getDynamicsInfo(self.id, SHOES[side], physicsClientId=self.client)[1])
-
-    def command(self, motions: tuple[TrackMotion, TrackMotion], step_s: float = 0.0) -> None:
-        """Advance both shoes' setpoints by `step_s` at these rates and drive the joints there."""
-        joints: list[int] = []
-        targets: list[float] = []
-        rates: list[float] = []
-        for side, motion in enumerate(motions):
-            setpoint = self._setpoints[side]
-            setpoint.yaw_rad += motion.yaw_rad_s * step_s
-            setpoint.side_m += motion.side_m_s * step_s
-            setpoint.belt_m += motion.belt_m_s * step_s
-            if step_s > 0.0:
-                self._rebase(side)
-            joints += [TRACK_JOINTS[side] + k for k in (YAW, SIDE, BELT)]
-            targets += setpoint.values()
-            rates += motion.values()
+    def command(self, rate: PlaneRate, grip: Grip, step_s: float) -> None:
+        """Move the anchor on by one step and drive the body there, no harder than the tracks grip."""
+        states = pybullet.getJointStates(self.id, PLANE, physicsClientId=self.client)
+        for k, (state, lag) in enumerate(zip(states, LONGEST_LAG, strict=True)):
+            self._anchor[k] = state[0] + min(lag, max(-lag, self._anchor[k] - state[0]))
+        self._force_site = (float(states[0][3]), float(states[1][3]), float(states[2][3]))
         pybullet.setJointMotorControlArray(
             self.id,
-            joints,
+            PLANE,
             pybullet.POSITION_CONTROL,
-            targetPositions=targets,
-            targetVelocities=rates,
-            forces=[SHOE_TORQUE_NM, SHOE_FORCE_N, SHOE_FORCE_N] * 2,
-            positionGains=[GAINS["positionGain"]] * 6,
-            velocityGains=[GAINS["velocityGain"]] * 6,
+            targetPositions=self._anchor,
+            targetVelocities=rate.values(),
+            forces=self._limits(grip),
+            positionGains=[GAINS["positionGain"]] * 3,
+            velocityGains=[GAINS["velocityGain"]] * 3,
             physicsClientId=self.client,
         )
+        for k, speed in enumerate(rate.values()):
+            self._anchor[k] += speed * step_s
 
-    def hold_shoes(self) -> None:
-        """Make the shoes' places their setpoints: motors at rest are locked, they do not catch up."""
-        for side, setpoint in enumerate(self._setpoints):
-            joints = [TRACK_JOINTS[side] + k for k in (YAW, SIDE, BELT)]
-            states = pybullet.getJointStates(self.id, joints, physicsClientId=self.client)
-            setpoint.yaw_rad, setpoint.side_m, setpoint.belt_m = (state[0] for state in states)
+    def _limits(self, grip: Grip) -> tuple[float, float, float]:
+        """The grip as limits of the three servos.
 
-    def _rebase(self, side: int) -> None:
-        """Put the shoe back under the chassis where it has gone too far, keeping the lag along x and y."""
-        setpoint = self._setpoints[side]
-        first = TRACK_JOINTS[side]
-        if abs(setpoint.side_m) >= REBASE_M:
-            self._shift_joint(first + SIDE, setpoint.side_m)
-            setpoint.side_m = 0.0
-        if abs(setpoint.belt_m) >= REBASE_M:
-            self._shift_joint(first + BELT, setpoint.belt_m)
-            setpoint.belt_m = 0.0
-        angle = pybullet.getJointState(self.id, first + YAW, physicsClientId=self.client)[0]
-        if abs(angle) >= REBASE_RAD:
-            self._shift_joint(first + YAW, angle)
-            setpoint.yaw_rad = 0.0
+        Far from it they do not matter. Near it they must shrink together: pushes along x and y make a circle,
+        and what the tracks spend on turning they lack for pushing (each has its own share of the grip).
+        """
+        fx, fy, torque_nm = (abs(f) for f in self._force_site)
+        force_n = math.hypot(fx, fy)
+        spent = force_n / grip.force_n + torque_nm / grip.torque_nm
+        if spent < 0.9:
+            return grip.force_n, grip.force_n, grip.torque_nm
+        free = 0.05  # of the grip, left to each so that it can come back
+        return (
+            max(free * grip.force_n, fx / spent),
+            max(free * grip.force_n, fy / spent),
+            max(free * grip.torque_nm, torque_nm / spent),
+        )
 
-    def _shift_joint(self, joint: int, by: float) -> None:
-        position, velocity = pybullet.getJointState(self.id, joint, physicsClientId=self.client)[:2]
-        pybullet.resetJointState(self.id, joint, position - by, velocity, physicsClientId=self.client)
+    def traction(self) -> tuple[float, float]:
+        """What the left and the right belt push with along the ground, forward positive [N]."""
+        fx, fy, torque_nm = (
+            float(s[3]) for s in pybullet.getJointStates(self.id, PLANE, physicsClientId=self.client)
+        )
+        ahead = self.pose()[1][:2, 0]  # its length is the cosine of the pitch: servos push horizontally
+        ahead_n = fx * float(ahead[0]) + fy * float(ahead[1])
+        turning_n = torque_nm / self.rig.rover.track_gauge_m
+        return ahead_n / 2 - turning_n, ahead_n / 2 + turning_n
+
+    def loads(self) -> tuple[float, float]:
+        """What presses the soles of the left and the right shoe on ground and rocks [N].
+
+        A rock in front of a shoe does not press its sole.
+        """
+        up = self.pose()[1][:, 2].tolist()
+        left, right = (self._pressed(shoe, up) for shoe in SHOES)
+        return left, right
+
+    def _pressed(self, shoe: int, up_site: list[float]) -> float:
+        contacts = pybullet.getContactPoints(bodyA=self.id, linkIndexA=shoe, physicsClientId=self.client)
+        return sum(
+            (
+                float(c[9]) * max(0.0, sum(n * u for n, u in zip(c[7], up_site, strict=True)))
+                for c in contacts
+            ),
+            0.0,
+        )
 
     def hold_cabin(self, arm_rad: float, cabin_rad: float) -> None:
         """Drive the arm and cabin joints to these angles."""
         # About +y: the arm turns by -arm, the cabin against the arm by arm - cabin (rig.CabinCalibration).
-        for joint, angle in ((ARM_JOINT, -arm_rad), (CABIN_JOINT, arm_rad - cabin_rad)):
+        for joint, angle in ((ARM_LINK, -arm_rad), (CABIN_LINK, arm_rad - cabin_rad)):
             pybullet.setJointMotorControl2(
                 self.id,
                 joint,
@@ -171,45 +171,26 @@ class RoverBody:
 
     def cabin_angles(self) -> tuple[float, float]:
         """True angles of the arm and the cabin, as the rig defines them [rad]."""
-        arm_joint, cabin_joint = (
-            pybullet.getJointState(self.id, j, physicsClientId=self.client)[0]
-            for j in (ARM_JOINT, CABIN_JOINT)
+        arm_state, cabin_state = pybullet.getJointStates(
+            self.id, (ARM_LINK, CABIN_LINK), physicsClientId=self.client
         )
-        return -arm_joint, -arm_joint - cabin_joint
-
-    def traction(self) -> tuple[float, float]:
-        """What each belt pulls with: the friction on its shoe along the body's x, in the last step [N].
-
-        Not the joint's force: a rock in front of a shoe would load that, but stands against the housing.
-        """
-        ahead = self.pose()[1][:, 0].tolist()
-        left, right = (self._friction_along(ahead, shoe) for shoe in SHOES)
-        return left, right
-
-    def _friction_along(self, axis_site: list[float], link: int) -> float:
-        contacts = pybullet.getContactPoints(bodyA=self.id, linkIndexA=link, physicsClientId=self.client)
-        along = (
-            c[10] * sum(a * b for a, b in zip(axis_site, c[11], strict=True))
-            + c[12] * sum(a * b for a, b in zip(axis_site, c[13], strict=True))
-            for c in contacts
-        )
-        return float(sum(along))
+        return -float(arm_state[0]), -float(arm_state[0]) - float(cabin_state[0])
 
     def pose(self) -> tuple[Array, Array]:
         """Position (3,) and rotation (3, 3) of `body` in `site`."""
-        position, quat = pybullet.getBasePositionAndOrientation(self.id, physicsClientId=self.client)
-        rotation = np.array(pybullet.getMatrixFromQuaternion(quat)).reshape(3, 3)
-        return np.array(position) - self._chassis_z_m * rotation[:, 2], rotation
+        position, quat = self.link_pose(BODY_LINK)
+        return np.array(position), np.array(pybullet.getMatrixFromQuaternion(quat)).reshape(3, 3)
 
     def quat(self) -> Quat:
         """quat_site_body (x, y, z, w)."""
-        x, y, z, w = pybullet.getBasePositionAndOrientation(self.id, physicsClientId=self.client)[1]
-        return x, y, z, w
+        return self.link_pose(BODY_LINK)[1]
 
-    def speed(self) -> tuple[float, float]:
-        """Linear [m/s] and angular [rad/s] speed of the chassis, in physics time."""
-        linear, angular = pybullet.getBaseVelocity(self.id, physicsClientId=self.client)
-        return math.hypot(*linear), math.hypot(*angular)
+    def speeds(self) -> tuple[float, float]:
+        """Fastest of the body's joints along [m/s] and about [rad/s] an axis, in physics time."""
+        rates = [
+            abs(float(s[1])) for s in pybullet.getJointStates(self.id, range(6), physicsClientId=self.client)
+        ]
+        return max(rates[X], rates[Y], rates[Z]), max(rates[YAW], rates[PITCH], rates[ROLL])
 
     def link_pose(self, link: int) -> tuple[Vec3, Quat]:
         """Frame of a link in `site`, from Bullet itself."""
@@ -219,10 +200,10 @@ class RoverBody:
         return state[4], state[5]
 
     def push(self, force_site_n: Vec3, at_site_m: Array) -> None:
-        """A force on the chassis during the next step."""
+        """A force on the body during the next step."""
         pybullet.applyExternalForce(
             self.id,
-            CHASSIS_LINK,
+            BODY_LINK,
             force_site_n,
             at_site_m.tolist(),
             pybullet.WORLD_FRAME,
@@ -230,63 +211,67 @@ class RoverBody:
         )
 
 
-def _build(client: int, rig: RigCalibration, chassis_site_m: Vec3, quat_site_body: Quat) -> int:
-    body = chassis(rig.rover)
-    chassis_mass_kg = rig.rover.rover_mass_kg - 2 * TRACK_MASS_KG - ARM_MASS_KG - 4 * CARRIER_MASS_KG
-    shoe = _shoe_shape(client, belt(rig.rover))
-    cabin_box = cabin(rig)
-    pivot, base = rig.cabin.arm_pivot_body_m, body.centre_m
-    arm_at = (pivot[0] - base[0], pivot[1] - base[1], pivot[2] - base[2])
-    z_shoe = belt(rig.rover).radius_m - base[2]
-    half_gauge = rig.rover.track_gauge_m / 2
-    prismatic, revolute = pybullet.JOINT_PRISMATIC, pybullet.JOINT_REVOLUTE
-    zero = (0.0, 0.0, 0.0)
-    links: list[
-        tuple[float, int, Vec3, Vec3, int, int, Vec3]
-    ] = []  # mass, shape, at, inertial, parent, type, axis
-    for first, side in zip(TRACK_JOINTS, (1.0, -1.0), strict=True):
-        at = (0.0, side * half_gauge, z_shoe)
-        links += [
-            (CARRIER_MASS_KG, -1, at, zero, 0, revolute, (0.0, 0.0, 1.0)),
-            (CARRIER_MASS_KG, -1, zero, zero, first + 1, prismatic, (0.0, 1.0, 0.0)),
-            (TRACK_MASS_KG, shoe, zero, zero, first + 2, prismatic, (1.0, 0.0, 0.0)),
-        ]
-    length_m = rig.cabin.arm_length_m
-    arm_shape = _box_shape(client, (length_m, arm(rig).size_m[1], ARM_THICKNESS_M), (length_m / 2, 0.0, 0.0))
-    cabin_shape = _box_shape(client, cabin_box.size_m, cabin_box.centre_m)
-    links += [
-        (ARM_MASS_KG, arm_shape, arm_at, (length_m / 2, 0.0, 0.0), 0, revolute, (0.0, 1.0, 0.0)),
-        (
-            rig.rover.payload_mass_kg,
-            cabin_shape,
-            (length_m, 0.0, 0.0),
-            cabin_box.centre_m,
-            ARM_JOINT + 1,
-            revolute,
-            (0.0, 1.0, 0.0),
+@dataclass(frozen=True)
+class _Link:
+    """One link of the chain: `inertial` is its centre of mass and `at` its joint, in the parent's frame."""
+
+    parent: int
+    joint: int
+    axis: Vec3 = (0.0, 0.0, 1.0)
+    mass_kg: float = CARRIER_MASS_KG
+    shape: int = -1
+    at: Vec3 = (0.0, 0.0, 0.0)
+    inertial: Vec3 = (0.0, 0.0, 0.0)
+
+
+def _links(client: int, rig: RigCalibration) -> tuple[_Link, ...]:
+    body, top, track = chassis(rig.rover), cabin(rig), belt(rig.rover)
+    body_kg = rig.rover.rover_mass_kg - 2 * TRACK_MASS_KG - ARM_MASS_KG - 5 * CARRIER_MASS_KG
+    slide, turn, fixed = pybullet.JOINT_PRISMATIC, pybullet.JOINT_REVOLUTE, pybullet.JOINT_FIXED
+    x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    half_arm = (rig.cabin.arm_length_m / 2, 0.0, 0.0)
+    arm_shape = _box_shape(client, (2 * half_arm[0], arm(rig).size_m[1], ARM_THICKNESS_M), half_arm)
+    shoe = _shoe_shape(client, track)
+    sides = (rig.rover.track_gauge_m / 2, -rig.rover.track_gauge_m / 2)
+    return (
+        _Link(-1, slide, x),
+        _Link(X, slide, y),
+        _Link(Y, turn, z),
+        _Link(YAW, slide, z),
+        _Link(Z, turn, y),
+        _Link(
+            PITCH, turn, x, body_kg, _box_shape(client, body.size_m, body.centre_m), inertial=body.centre_m
         ),
-    ]
-    masses, shapes, positions, inertials, parents, types, axes = (
-        list(column) for column in zip(*links, strict=True)
+        *(_Link(ROLL, fixed, z, TRACK_MASS_KG, shoe, (0.0, s, track.radius_m)) for s in sides),
+        _Link(ROLL, turn, y, ARM_MASS_KG, arm_shape, rig.cabin.arm_pivot_body_m, half_arm),
+        _Link(
+            ARM_LINK,
+            turn,
+            y,
+            rig.rover.payload_mass_kg,
+            _box_shape(client, top.size_m, top.centre_m),
+            (rig.cabin.arm_length_m, 0.0, 0.0),
+            top.centre_m,
+        ),
     )
-    n = len(links)
-    level = (0.0, 0.0, 0.0, 1.0)
+
+
+def _build(client: int, rig: RigCalibration) -> int:
+    links = _links(client, rig)
+    level = [(0.0, 0.0, 0.0, 1.0)] * len(links)
     return int(
         pybullet.createMultiBody(
-            baseMass=chassis_mass_kg,
-            baseCollisionShapeIndex=_box_shape(client, body.size_m, zero),
-            basePosition=chassis_site_m,
-            baseOrientation=quat_site_body,
-            linkMasses=masses,
-            linkCollisionShapeIndices=shapes,
-            linkVisualShapeIndices=[-1] * n,
-            linkPositions=positions,
-            linkOrientations=[level] * n,
-            linkInertialFramePositions=inertials,
-            linkInertialFrameOrientations=[level] * n,
-            linkParentIndices=parents,
-            linkJointTypes=types,
-            linkJointAxis=axes,
+            baseMass=0.0,  # the site itself
+            linkMasses=[k.mass_kg for k in links],
+            linkCollisionShapeIndices=[k.shape for k in links],
+            linkVisualShapeIndices=[-1] * len(links),
+            linkPositions=[k.at for k in links],
+            linkOrientations=level,
+            linkInertialFramePositions=[k.inertial for k in links],
+            linkInertialFrameOrientations=level,
+            linkParentIndices=[k.parent + 1 for k in links],  # Bullet counts the base as 0 here
+            linkJointTypes=[k.joint for k in links],
+            linkJointAxis=[k.axis for k in links],
             physicsClientId=client,
         )
     )

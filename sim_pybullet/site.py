@@ -40,7 +40,7 @@ def make_terrain(config: TerrainConfig, route: tuple[Segment, ...], seed: int) -
         lander_m = (config.lander.x, config.lander.y) if config.lander else (2.0, p.width / 2)
         relief = Relief(p.roughness, p.craters, p.slope, p.slope_direction)
         terrain = make_ground(relief, (-lander_m[0], -lander_m[1]), p.width, CELL_M, rng)
-    require_cover(terrain, area_of(route, ROUTE_MARGIN_M))
+    require_cover(terrain.origin_site_m, terrain.corner_site_m, area_of(route, ROUTE_MARGIN_M))
     return terrain
 
 

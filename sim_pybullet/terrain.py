@@ -98,9 +98,8 @@ def area_of(route: tuple[Segment, ...], margin_m: float) -> Area:
     return Area(low, high)
 
 
-def require_cover(terrain: Terrain, area: Area) -> None:
-    """TerrainError that names the side where the ground ends before the area does."""
-    low, high = terrain.origin_site_m, terrain.corner_site_m
+def require_cover(low: Vec2, high: Vec2, area: Area) -> None:
+    """TerrainError that names the side where ground from `low` to `high` ends before the area does."""
     sides = (
         ("x", "below", low[0], area.low_site_m[0], area.low_site_m[0] < low[0]),
         ("y", "below", low[1], area.low_site_m[1], area.low_site_m[1] < low[1]),

@@ -19,8 +19,8 @@ CURRENT_PER_N = 0.030
 CURRENT_SIGMA_A = 0.002
 # The motors are geared for the weight they carry. A slope of 30 degrees takes 0.25 of it per track; against a
 # rock a track slides on its soil only at 0.3 to 0.4. One motor alone may draw more than both together.
-LIMIT_PER_WEIGHT_BOTH = 0.29
-LIMIT_PER_WEIGHT_ONE = 0.36
+LIMIT_PER_WEIGHT_BOTH = 0.265
+LIMIT_PER_WEIGHT_ONE = 0.34
 LIMIT_LASTS_S = 8.0  # a step or a stone is overcome sooner
 GAIN_SIGMA = 0.004  # belts differ in length and tension: the systematic error called track synchronism
 

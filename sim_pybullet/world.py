@@ -19,7 +19,7 @@ from sim_pybullet.ground_body import add_rock, add_terrain
 from sim_pybullet.head import SimHead
 from sim_pybullet.inclinometer import SimInclinometer
 from sim_pybullet.poses import CabinChain, cabin_chain
-from sim_pybullet.rover import RoverBody, TrackMotion
+from sim_pybullet.rover import Grip, PlaneRate, RoverBody
 from sim_pybullet.scene import Rock, SceneState
 from sim_pybullet.shape import TETHER_ANCHOR_BODY_M, belt
 from sim_pybullet.site import make_rocks, make_soils, make_terrain, start_pose
@@ -34,11 +34,12 @@ STEP_S = 1 / 60
 CABIN_SCALE = 6.0  # the cabin is nearly half the mass: faster swings would throw the rover about
 SETTLED_M_S, SETTLED_RAD_S = 2e-4, 2e-3
 SETTLED_STEPS = 10
-LONGEST_SETTLING_STEPS = 120
+LONGEST_SETTLING_STEPS = 240
 PHYSICS_MARGIN_M = 1.2  # how much ground beyond the off-track margins is solid
 SPOOL_HEIGHT_M = 0.3
 TRUTH_EVERY_S = 60.0
-STILL = TrackMotion()
+LEAST_GRIP = 0.02  # of the weight: even with its belly on a rock some grouser drags
+STILL = PlaneRate()
 
 
 class World:
@@ -81,6 +82,7 @@ class World:
         )
         self._contact_m = belt(rig.rover).length_m
         self._slips = (0.0, 0.0)
+        self._grip = Grip(self.weight_n, self.weight_n)
         self._pull = np.zeros(3)
         self._asleep, self._calm_steps, self._restless_steps = False, 0, 0
         self._last_truth_s = -TRUTH_EVERY_S
@@ -122,7 +124,6 @@ class World:
         self.cabin.settle()
         self.head.settle()
         if not (self.tracks.moving or self.cabin.moving or self._asleep or self._never_sleep):
-            self.body.hold_shoes()
             self._settle_down()  # what sways after a stop is the time scale's inertia, not the rover's
         self._write_truth(force=awake)
 
@@ -134,11 +135,11 @@ class World:
             self.wake()
         scale = min(self.config.time_scale, CABIN_SCALE) if self.cabin.moving else self.config.time_scale
         count = max(1, round(tick_s / scale / STEP_S))
-        motions = _shoe_motions(moved, count * STEP_S, self.rig.rover.track_gauge_m)
+        rate = _plane_rate(moved, self.body.pose()[1], count * STEP_S)
         self.body.hold_cabin(*self.cabin.targets_rad)
         self._pull = self.tether.pull(self._anchor())
         for _ in range(count):
-            self._step(motions)
+            self._step(rate)
         return self.body.traction()
 
     def _displacement(self, belts_m: tuple[float, float]) -> Displacement:
@@ -146,9 +147,7 @@ class World:
         position, rotation = self.body.pose()
         load = Load.of(rotation, self.weight_n, self._pull)
         left, right = (self._ground(position + rotation[:, 1] * side) for side in self._sides())
-        for side, ground in enumerate((left, right)):
-            # Cohesion makes a track hold better than its load alone would; Bullet only knows friction.
-            self.body.set_friction(side, traction_limit(ground.soil, load.down_n / 2) / (load.down_n / 2))
+        self._grip = self._gripping((left, right))
         soil = self.soils.at(float(position[0]), float(position[1]))
         efficiency = self.soils.yaw_efficiency(soil, float(position[0]), float(position[1]))
         self._slips = tuple(  # type: ignore[assignment]
@@ -156,6 +155,17 @@ class World:
             for g, b in zip((left, right), belts_m, strict=True)
         )
         return displacement(belts_m, (left, right), load, efficiency, self.rig.rover.track_gauge_m)
+
+    def _gripping(self, grounds: tuple[TrackGround, TrackGround]) -> Grip:
+        """What the tracks can push with under the load that they bear now; less where the belly bears some.
+
+        The servos push horizontally and take the ground's normal force as it is, hence the cosine: the rover
+        must slide where the tangent of the slope, not its sine, exceeds the friction.
+        """
+        level = float(self.body.pose()[1][2, 2])
+        limits_n = (traction_limit(g.soil, n) for g, n in zip(grounds, self.body.loads(), strict=True))
+        force_n = max(sum(limits_n) * level, LEAST_GRIP * self.weight_n)
+        return Grip(force_n, force_n * self.rig.rover.track_gauge_m / 2)
 
     def _sides(self) -> tuple[float, float]:
         half_m = self.rig.rover.track_gauge_m / 2
@@ -166,8 +176,8 @@ class World:
         soil = self.soils.at(x, y)
         return TrackGround(soil, self.soils.slip_scatter(soil, x, y) + self.extra_slip, self._contact_m)
 
-    def _step(self, motions: tuple[TrackMotion, TrackMotion]) -> None:
-        self.body.command(motions, STEP_S)
+    def _step(self, rate: PlaneRate) -> None:
+        self.body.command(rate, self._grip, STEP_S)
         if self._pull.any():
             x, y, z = self._pull
             self.body.push((float(x), float(y), float(z)), self._anchor())
@@ -177,7 +187,7 @@ class World:
 
     def _doze(self) -> None:
         """Fall asleep after some calm steps, or where a contact keeps trembling for very long."""
-        linear, angular = self.body.speed()
+        linear, angular = self.body.speeds()
         calm = linear < SETTLED_M_S and angular < SETTLED_RAD_S
         self._calm_steps = self._calm_steps + 1 if calm else 0
         self._restless_steps += 1
@@ -186,7 +196,7 @@ class World:
 
     def _settle_down(self) -> None:
         while not self._asleep:
-            self._step((STILL, STILL))
+            self._step(STILL)
 
     def _anchor(self) -> Array:
         position, rotation = self.body.pose()
@@ -257,15 +267,15 @@ def _connect(gravity_m_s2: float) -> int:
         fixedTimeStep=STEP_S,
         enableConeFriction=1,  # the default pyramid holds 40 % more at 45 degrees to the axes
         deterministicOverlappingPairs=1,
+        contactBreakingThreshold=0.001,  # with Bullet's 20 mm the rover rocks on stale contacts for ever
         physicsClientId=client,
     )
     return client
 
 
-def _shoe_motions(moved: Displacement, lasts_s: float, gauge_m: float) -> tuple[TrackMotion, TrackMotion]:
-    """How both shoes move against the chassis while they stand still on the ground."""
-    yaw = -moved.turn_rad / lasts_s
-    side = -moved.left_m / lasts_s
-    left = -(moved.ahead_m - moved.turn_rad * gauge_m / 2) / lasts_s
-    right = -(moved.ahead_m + moved.turn_rad * gauge_m / 2) / lasts_s
-    return TrackMotion(yaw, side, left), TrackMotion(yaw, side, right)
+def _plane_rate(moved: Displacement, rotation: Array, lasts_s: float) -> PlaneRate:
+    """A displacement in the body's axes as motion of the anchor in the site's plane."""
+    x_m, y_m = moved.ahead_m * rotation[:2, 0] + moved.left_m * rotation[:2, 1]
+    return PlaneRate(
+        float(x_m) / lasts_s, float(y_m) / lasts_s, moved.turn_rad * float(rotation[2, 2]) / lasts_s
+    )

@@ -168,7 +168,7 @@ class Trace:
             path, leaf = next(reversed(self.entered.items()))
             try:
                 leaf.stop(Status.INVALID)  # halts only while the leaf is still listed as entered
-            except Exception as error:
+            except BaseException as error:
                 first = first or error
             finally:
                 self.entered.pop(path, None)
@@ -209,11 +209,11 @@ class Leaf(Behaviour):
 
     def initialise(self) -> None:
         self.trace.entered[self.path] = self
-        with _Naming(self.path):
+        with Naming(self.path):
             self.begin()
 
     def update(self) -> Status:
-        with _Naming(self.path):
+        with Naming(self.path):
             outcome = self.step()
         if outcome is None:
             self.feedback_message = ""
@@ -226,11 +226,11 @@ class Leaf(Behaviour):
 
     def terminate(self, new_status: Status) -> None:
         if self.trace.entered.pop(self.path, None) is not None or new_status is not Status.INVALID:
-            with _Naming(self.path):
+            with Naming(self.path):
                 self.halt()
 
 
-class _Naming:
+class Naming:
     """Names the node on any exception that passes, once."""
 
     def __init__(self, path: str) -> None:

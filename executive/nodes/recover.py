@@ -8,7 +8,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Composite
 
-from executive.nodes.base import Trace
+from executive.nodes.base import Naming, Trace
 from executive.types import Outcome, Reason
 
 Choose = Callable[[Outcome[object], frozenset[str]], str | None]
@@ -92,7 +92,8 @@ class Recover(Composite):
         self.failure = failure
         if self.tried >= self.attempts:
             return self.give_up(f"{self.attempts} attempts used up")
-        name = self.choose(failure, frozenset(self.strategies))
+        with Naming(self.path):
+            name = self.choose(failure, frozenset(self.strategies))
         if name is None:
             return self.give_up("no strategy fits")
         if name not in self.strategies:

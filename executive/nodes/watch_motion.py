@@ -24,9 +24,13 @@ class WatchMotion(Leaf):
     outcomes = (Reason.UNEXPECTED,)
     _action: Action[PoseEstimate] | None = None
 
+    def begin(self) -> None:
+        self._predictions: dict[float, PoseEstimate] = {}
+
     def step(self) -> Outcome[object] | None:
+        predicted = self.services.classification.predicted()
+        self._predictions[predicted.time_s] = predicted
         if self._action is None:
-            predicted = self.services.classification.predicted()
             request = LocaliseRequest(Quality.TREND, predicted, budget_s=120.0)
             self._action = self.services.localizer.locate(request)
             return None
@@ -41,8 +45,12 @@ class WatchMotion(Leaf):
             self._action.cancel()
             self._action = None
 
+    def _predicted_at(self, time_s: float) -> PoseEstimate:
+        """The prediction nearest to the time of the frames, which lie some way back."""
+        return self._predictions[min(self._predictions, key=lambda known: abs(known - time_s))]
+
     def _judge(self, seen: PoseEstimate) -> Outcome[object] | None:
-        predicted = self.services.classification.predicted()
+        predicted = self._predicted_at(seen.time_s)
         off = np.array([seen.x_m - predicted.x_m, seen.y_m - predicted.y_m])
         spread = seen.covariance[:2, :2] + predicted.covariance[:2, :2]
         distance = math.sqrt(float(off @ np.linalg.solve(spread, off)))

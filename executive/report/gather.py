@@ -16,7 +16,7 @@ from executive.telemetry import History, summarise
 from executive.telemetry.events import RouteEvent, SegmentEvent, Start
 from executive.telemetry.result import vision_fixes
 from executive.telemetry.truth import CrossTrack, PoseError, Track, cross_track
-from executive.types import PoseEstimate, Segment
+from executive.types import PoseEstimate, Segment, Source
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +41,8 @@ class Run:
 
     @cached_property
     def estimates(self) -> list[PoseEstimate]:
-        """Every pose estimate, in order of time."""
-        return [at.event for at in self.history.all(PoseEstimate)]
+        """What the executive believed, in order of time; a motion tendency is only watched."""
+        return [at.event for at in self.history.all(PoseEstimate) if at.event.source is not Source.TREND]
 
     @cached_property
     def errors(self) -> list[PoseError] | None:

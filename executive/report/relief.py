@@ -13,7 +13,7 @@ from executive.types import Array
 
 _LOW, _HIGH = np.array([226.0, 217.0, 203.0]), np.array([247.0, 243.0, 235.0])  # sand, red first
 _SUN = np.array([-0.5, 0.5, 0.7])  # from the upper left, as maps are shaded
-_TYPICAL_SLOPE = 0.16  # what a typical slope is made to look like; the shading is for reading, not measuring
+_TYPICAL_SLOPE = 0.10  # what a typical slope is made to look like; the shading is for reading, not measuring
 _LEAST_SLOPE = 0.02
 
 

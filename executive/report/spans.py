@@ -8,6 +8,11 @@ from typing import NamedTuple
 from executive.report.gather import Run
 from executive.telemetry.events import NodeChange
 
+_PLAIN = frozenset(
+    {"sequence", "selector", "parallel", "loop", "recover", "retry", "repeat", "for_each"}
+    | {"inverter", "timeout", "force_success", "force_failure"}
+)
+
 
 class Span(NamedTuple):
     """From one mission time to another [s], with a kind that gives the colour and words for hovering."""
@@ -71,13 +76,21 @@ def fault_spans(run: Run) -> dict[str, list[Span]]:
 
 
 def short_names(paths: list[str]) -> dict[str, str]:
-    """The last name of each path, with as many of its parents as tell it from the others."""
+    """The last name of each path, with as many of its parents as tell it from the others.
+
+    Composites that carry only their type's name tell nothing, so trees and named nodes stand for them.
+    """
+    telling = {path: _telling(path.split("/")) for path in paths}
     names: dict[str, str] = {}
-    for path in paths:
-        parts = path.split("/")
+    for path, parts in telling.items():
         for n in range(1, len(parts) + 1):
-            name = "/".join(parts[-n:])
-            if sum(other == name or other.endswith("/" + name) for other in paths) == 1:
+            tail = parts[-n:]
+            if sum(other[-n:] == tail for other in telling.values()) == 1:
                 break
-        names[path] = name
+        names[path] = "/".join(tail) if list(telling.values()).count(parts) == 1 else path
     return names
+
+
+def _telling(parts: list[str]) -> list[str]:
+    kept = [part for part in parts[:-1] if part.split("#")[0] not in _PLAIN]
+    return [*kept, parts[-1]]

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from executive.tree.spec import NodeSpec, TreeSpec, root_of, under
+from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 
 SYMBOLS = {
     "sequence": "→",
     "selector": "?",
     "parallel": "⇉",
     "inverter": "¬",
+    "loop": "↺",
     "retry": "↻",
     "repeat": "⟳",
     "for_each": "∀",
@@ -64,7 +65,7 @@ def boxes(
     maker = _Maker(strategies or {}, outcomes or {})
     root = Box(tree.name, tree.name, "⌂", "tree", _doc_lines(tree.doc), frame=tree.name)
     root.outcome = maker.outcomes.get(tree.name)
-    root.children = [maker.box(*root_of(tree.name, tree))]
+    root.children = [maker.box(*root_of(tree.name, tree), tree)]
     return root
 
 
@@ -72,7 +73,7 @@ class _Maker:
     def __init__(self, strategies: Mapping[str, TreeSpec], outcomes: Mapping[str, str]) -> None:
         self.strategies, self.outcomes = strategies, outcomes
 
-    def box(self, path: str, node: NodeSpec) -> Box:
+    def box(self, path: str, node: NodeSpec, around: TreeSpec) -> Box:
         made = Box(
             path,
             node.name,
@@ -84,17 +85,21 @@ class _Maker:
         )
         if node.tree is not None:
             made.frame, made.symbol = node.tree.name, "⌂"
-            made.children = [self.box(*root_of(path, node.tree))]
+            made.children = [self.box(*root_of(path, node.tree), node.tree)]
         else:
-            made.children = [self.box(*child) for child in under(path, node.children)]
+            made.children = [self.box(*child, around) for child in under(path, node.children)]
         if node.type == "recover":
-            made.children += [self.strategy(f"{path}/{name}", name, t) for name, t in self.strategies.items()]
+            made.children += [
+                self.strategy(f"{path}/{name}", name, tree)
+                for name, tree in self.strategies.items()
+                if fits(tree, around.values)
+            ]
         return made
 
     def strategy(self, path: str, name: str, tree: TreeSpec) -> Box:
         made = Box(path, name, "✚", "tree", _doc_lines(tree.doc), alternative=True, frame=tree.name)
         made.outcome = self.outcomes.get(path)
-        made.children = [self.box(*root_of(path, tree))]
+        made.children = [self.box(*root_of(path, tree), tree)]
         return made
 
 

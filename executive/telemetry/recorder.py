@@ -52,8 +52,10 @@ class _McapSink:
         """Write the summary and close; without effect the second time."""
         if self._open:
             self._open = False
-            self._writer.finish()  # type: ignore[no-untyped-call]
-            self._file.close()
+            try:
+                self._writer.finish()  # type: ignore[no-untyped-call]
+            finally:
+                self._file.close()
 
     @property
     def digest(self) -> str:

@@ -50,6 +50,7 @@ class FakeWorld(BaseModel):
     advance: float = 0.95
     yaw_efficiency: float = 0.6
     pixel_sigma: float = 0.5
+    drive_current_a: float = 0.12
 
 
 @dataclass
@@ -143,7 +144,8 @@ class FakeTracks:
         self.robot.rest()
 
     def read(self) -> TrackReading:
-        robot, current = self.robot, 0.12 if self.robot.moving else 0.02
+        robot = self.robot
+        current = robot.world.drive_current_a if robot.moving else 0.02
         return TrackReading(robot.clock.now_s, robot.left_m, robot.right_m, current, current, robot.moving)
 
 

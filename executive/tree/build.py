@@ -29,7 +29,7 @@ from executive.nodes.decorators import ForEach, Guarded, Timeout
 from executive.nodes.loop import Loop
 from executive.nodes.recover import Recover
 from executive.nodes.services import Services
-from executive.tree.spec import Literal, NodeSpec, PortValue, TreeSpec, root_of, under
+from executive.tree.spec import Literal, NodeSpec, PortValue, TreeSpec, fits, root_of, under
 from executive.types import Outcome
 from executive.values import SEGMENT, ValueType
 
@@ -140,15 +140,6 @@ def _set_inputs(spec: TreeSpec, scope: Scope, inputs: Mapping[str, object]) -> N
             scope.binding(port.name).write(port.default)
     if problems:
         raise ConfigError(problems)
-
-
-def _fits(strategy: TreeSpec, scope: Scope) -> bool:
-    """Whether the tree around has every value that the strategy's tree must be given."""
-    for port in strategy.ports:
-        known = scope.types.get(port.name)
-        if port.default is REQUIRED and (known is None or known.name != port.type.name):
-            return False
-    return True
 
 
 class _Builder:
@@ -270,7 +261,7 @@ class _Builder:
         made = {
             name: self.strategy(f"{path}/{name}", name, tree, scope)
             for name, tree in self.strategies.items()
-            if _fits(tree, scope)
+            if fits(tree, scope.types)
         }
         self.recovering = False
         attempts = spec.literal("attempts")

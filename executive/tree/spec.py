@@ -8,7 +8,7 @@ from typing import Any
 
 from executive.config.source import Mark
 from executive.guards import Guard
-from executive.nodes.base import PortSpec
+from executive.nodes.base import REQUIRED, PortSpec
 from executive.values import ValueType
 
 
@@ -73,6 +73,15 @@ class TreeSpec:
     values: Mapping[str, ValueType[Any]]
     size: int = 1
     """Nodes in all, sub-trees unfolded."""
+
+
+def fits(strategy: TreeSpec, values: Mapping[str, ValueType[Any]]) -> bool:
+    """Whether a tree with these values has all that a strategy's tree must be given."""
+    return all(
+        port.name in values and values[port.name].name == port.type.name
+        for port in strategy.ports
+        if port.default is REQUIRED
+    )
 
 
 def under(path: str, nodes: tuple[NodeSpec, ...]) -> Iterator[tuple[str, NodeSpec]]:

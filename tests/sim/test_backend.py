@@ -51,7 +51,7 @@ def test_safe_stop_stops_everything_and_may_be_called_twice() -> None:
     backend.safe_stop()
     backend.advance()
     assert all(a.poll() is not None for a in actions)
-    assert not (d.tracks.read().moving or d.cabin.read().moving or d.head.read().moving)
+    assert not any(device.read().moving for device in (d.tracks, d.cabin, d.head))
     backend.close()
     backend.close()
 

@@ -12,7 +12,7 @@ from executive.rig import HeadCalibration
 from executive.types import Call, Reason
 from sim_pybullet.head import SimHead
 from sim_pybullet.link import SimLink
-from sim_pybullet.rover import CABIN_JOINT
+from sim_pybullet.rover import CABIN_LINK
 from sim_pybullet.tether import DRAG_N, SLACK_M
 from tests.sim.conftest import WorldMaker
 from tests.sim.worlds import drive, finish, plain, travel
@@ -40,7 +40,7 @@ def test_cabin_stands_where_the_rig_says(world_of: WorldMaker, arm_deg: float, c
     normal = np.array([-math.sin(cabin), 0.0, math.cos(cabin)])
     origin = pivot + rig.plc_offset_cabin_m[0] * ahead + rig.plc_offset_cabin_m[2] * normal
     position, rotation = world.body.pose()
-    at, quat = world.body.link_pose(CABIN_JOINT)
+    at, quat = world.body.link_pose(CABIN_LINK)
     assert np.linalg.norm(np.array(at) - (position + rotation @ pivot)) < 0.0005
     assert np.abs(rotation.T @ quat_matrix(quat) @ [1, 0, 0] - ahead).max() < 0.003
     scene = world.scene()

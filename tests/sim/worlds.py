@@ -33,7 +33,7 @@ def plain(
 ) -> dict[str, Any]:
     """A `world:` mapping: procedural ground that rises along x, the rover looking along x."""
     return {
-        "terrain": {"procedural": {"roughness": roughness, "slope": slope, "width": "12 m"}},
+        "terrain": {"procedural": {"roughness": roughness, "slope": slope, "width": "12 m", "rocks": 0}},
         "soil": {"default": soil},
         "start": {"heading": "0 deg", "position_error": "0 mm"},
         **world,

@@ -7,13 +7,15 @@ from typing import Any
 
 import pytest
 
+from executive.classification import Assessment
 from executive.clock import Clock
 from executive.errors import ConfigError
 from executive.nodes import LEAVES
 from executive.nodes.base import FromTree, In, InOut, Leaf, Out
+from executive.pool import Situation
 from executive.tree.build import build
 from executive.tree.load import load_tree_text
-from executive.types import Outcome, Reason
+from executive.types import CabinReading, Outcome, PoseEstimate, Reason, Source
 from executive.values import INTEGER, LENGTH, POINT, POSE, SEGMENT, TEXT
 
 
@@ -88,22 +90,35 @@ TEST_LEAVES: dict[str, type[Leaf]] = LEAVES | {
 
 
 class ScriptedPool:
-    """Chooses the names given, in turn; keeps what it was told."""
+    """Chooses the names given, in turn; keeps what it was asked with and what came of it."""
 
     def __init__(self, *names: str | None) -> None:
-        self.names, self.failures, self.reports = list(names), [], []
+        self.names, self.failures, self.at_hand, self.helped = list(names), [], [], []
 
-    def choose(self, failure: Outcome[object]) -> str | None:
-        self.failures.append(failure)
-        return self.names.pop(0) if self.names else None
+    def choose(self, situation: Situation, at_hand: frozenset[str]) -> Any:
+        self.failures.append(situation.failure)
+        self.at_hand.append(at_hand)
+        return SimpleNamespace(strategy=self.names.pop(0) if self.names else None)
 
-    def report(self, name: str, helped: bool) -> None:
-        self.reports.append((name, helped))
+    def conclude(self, helped: bool) -> None:
+        self.helped.append(helped)
 
 
 def services(pool: Any = None) -> Any:
-    """The few services that these leaves use."""
-    return SimpleNamespace(clock=Clock(1.0), pool=pool or ScriptedPool(), diary=[])
+    """The few services that these leaves and a choice use."""
+    pose = PoseEstimate(0.0, (0.0, 0.0, 0.0), (0, 0, 0, 1), [[0.0] * 6] * 6, Source.MARKERS)
+    assessment = Assessment(0.0, {}, None, None)
+    return SimpleNamespace(
+        clock=Clock(1.0),
+        pool=pool or ScriptedPool(),
+        diary=[],
+        devices=SimpleNamespace(
+            tracks=SimpleNamespace(stop=lambda: None),
+            cabin=SimpleNamespace(read=lambda: CabinReading(0.0, 0.0, 0.0, False)),
+        ),
+        classification=SimpleNamespace(predicted=lambda: pose, assess=lambda pose, segment: assessment),
+        journal=SimpleNamespace(assessment=lambda assessment: None),
+    )
 
 
 class Bench:

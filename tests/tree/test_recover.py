@@ -2,6 +2,7 @@ import pytest
 
 from executive.errors import ConfigError
 from executive.types import Reason
+from tests.tree.conftest import ScriptedPool
 
 STRATEGIES = {
     "fix": "tree: fix\nroot: {act: {say: fix, ticks: 1}}",
@@ -10,20 +11,6 @@ STRATEGIES = {
         "tree: remeasure\nports: {depth: {type: length, direction: out}}\nroot: {measure: {value: '{depth}'}}"
     ),
 }
-
-
-class ScriptedPool:
-    """Chooses the names given, in turn; keeps what it was told."""
-
-    def __init__(self, *names):
-        self.names, self.failures, self.reports = list(names), [], []
-
-    def choose(self, failure):
-        self.failures.append(failure)
-        return self.names.pop(0) if self.names else None
-
-    def report(self, name, helped):
-        self.reports.append((name, helped))
 
 
 def test_a_strategy_is_chosen_by_the_failure_and_the_child_runs_again(bench):
@@ -36,7 +23,7 @@ def test_a_strategy_is_chosen_by_the_failure_and_the_child_runs_again(bench):
     tree = bench.build(root, pool, STRATEGIES, ports, depth=0.0)
     assert bench.run(tree) == "SUCCESS"
     assert [failure.reason for failure in pool.failures] == [Reason.GUARD]
-    assert pool.reports == [("remeasure", True)]
+    assert pool.helped == [True]
     assert bench.diary.count("begin child") == 2
     assert tree.store.values["t:depth"] == 0.25
 
@@ -45,7 +32,7 @@ def test_a_strategy_that_changes_nothing_did_not_help(bench):
     pool = ScriptedPool("fix", "fix")
     tree = bench.build("{recover: {attempts: 5, child: {act: {reason: blocked}}}}", pool, STRATEGIES)
     assert bench.run(tree) == "FAILURE"
-    assert pool.reports == [("fix", False), ("fix", False)]
+    assert pool.helped == [False, False]
     path, outcome = tree.trace.last_failure
     assert (path, outcome.reason) == ("t/recover", Reason.NO_STRATEGY)
     assert outcome.detail == "no strategy fits; blocked: as told"
@@ -55,7 +42,7 @@ def test_a_strategy_that_fails_itself_gives_way_to_the_next(bench):
     pool = ScriptedPool("hopeless", "fix")
     tree = bench.build("{recover: {attempts: 5, child: {act: {reason: tilt}}}}", pool, STRATEGIES)
     bench.run(tree)
-    assert pool.reports == [("hopeless", False), ("fix", False)]
+    assert pool.helped == [False, False]
     assert [failure.reason for failure in pool.failures] == [Reason.TILT] * 3
 
 
@@ -81,10 +68,13 @@ def test_every_strategy_has_its_own_path(bench):
     assert set(tree.paths) == {"t/recover", "t/recover/act", "t/recover/fix", "t/recover/fix/act"}
 
 
-def test_a_strategy_that_needs_what_the_tree_lacks_is_refused(bench):
-    needy = {"needy": "tree: needy\nports: {segment: {type: Segment}}\nroot: act"}
-    with pytest.raises(ConfigError, match=r"needs \{segment\}"):
-        bench.build("{recover: {attempts: 2, child: act}}", ScriptedPool(), needy)
+def test_a_strategy_that_needs_what_the_tree_lacks_is_not_at_hand(bench):
+    needy = {"needy": "tree: needy\nports: {segment: {type: Segment}}\nroot: act", "fix": STRATEGIES["fix"]}
+    pool = ScriptedPool()
+    tree = bench.build("{recover: {attempts: 2, child: {act: {reason: blocked}}}}", pool, needy)
+    assert bench.run(tree) == "FAILURE"
+    assert pool.at_hand == [{"fix"}]
+    assert "t/recover/needy" not in tree.paths
 
 
 def test_recover_inside_a_strategy_is_refused(bench):
