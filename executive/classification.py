@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from executive import prediction
 from executive.clock import Clock
-from executive.hypotheses import FAILURE_CODES, PRIOR, SEEING, Channel, Evidence, Hypothesis, weigh
+from executive.hypotheses import FAILURE_CODES, PRIOR, SEEING, Channel, Evidence, Hypothesis, weigh, without
 from executive.ports import Devices
 from executive.prediction import MotionNoise, MotionState
 from executive.rig import RigCalibration
@@ -117,8 +117,10 @@ class Classification:
     def fixed(self, fix: PoseEstimate) -> Assessment:
         """Compare a precise fix with the prediction, weigh, and learn if the fix is explained."""
         evidence = self._compare(fix, self._undoubted or self.motion)
-        self._undoubted = None
         self._weigh(evidence)
+        if self._undoubted is not None:  # measured again: a false fix would not have repeated itself
+            self.weights = without(self.weights, Hypothesis.LOCALISATION_OUTLIER)
+            self._undoubted = None
         if self._motion_explained > 0.5 or self.motion.source is Source.PRIOR:
             self.motion = prediction.correct(self.motion, fix, self.noise)
         else:

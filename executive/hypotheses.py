@@ -178,3 +178,10 @@ def weigh(
         posterior[hypothesis] = weight
     total = sum(posterior.values())
     return {hypothesis: weight / total for hypothesis, weight in posterior.items()}
+
+
+def without(weights: Mapping[Hypothesis, float], refuted: Hypothesis) -> dict[Hypothesis, float]:
+    """The weights after one hypothesis was refuted."""
+    rest = {h: 0.0 if h is refuted else w for h, w in weights.items()}
+    total = sum(rest.values())
+    return {h: w / total for h, w in rest.items()}
