@@ -8,13 +8,14 @@ from dataclasses import dataclass, field
 
 from executive import prediction
 from executive.clock import Clock
-from executive.hypotheses import FAILURE_CODES, PRIOR, Channel, Evidence, Hypothesis, weigh
+from executive.hypotheses import FAILURE_CODES, PRIOR, SEEING, Channel, Evidence, Hypothesis, weigh, without
 from executive.ports import Devices
 from executive.prediction import MotionNoise, MotionState
 from executive.rig import RigCalibration
 from executive.types import (
     Outcome,
     PoseEstimate,
+    Reason,
     Segment,
     Source,
     TetherReading,
@@ -24,6 +25,7 @@ from executive.types import (
 
 LEAST_TURN_RAD = math.radians(3.0)
 LEAST_ADVANCE_M = 0.02
+LEAST_BLOCKED_TURN_RAD = math.radians(5.0)  # what holds one track turns the rover
 
 
 @dataclass(frozen=True)
@@ -84,6 +86,7 @@ class Classification:
         self.observed_advance_ratio: float | None = None
         self._rig, self._clock = rig, clock
         self._since = _SinceFix()
+        self._undoubted: MotionState | None = None
         self._current_baseline_a: float | None = None
 
     def sense(self, devices: Devices) -> Telemetry:
@@ -113,9 +116,12 @@ class Classification:
 
     def fixed(self, fix: PoseEstimate) -> Assessment:
         """Compare a precise fix with the prediction, weigh, and learn if the fix is explained."""
-        evidence = self._compare(fix)
+        evidence = self._compare(fix, self._undoubted or self.motion)
         self._weigh(evidence)
-        if self.weights[Hypothesis.NOMINAL] > 0.5 or self.motion.source is Source.PRIOR:
+        if self._undoubted is not None:  # measured again: a false fix would not have repeated itself
+            self.weights = without(self.weights, Hypothesis.LOCALISATION_OUTLIER)
+            self._undoubted = None
+        if self._motion_explained > 0.5 or self.motion.source is Source.PRIOR:
             self.motion = prediction.correct(self.motion, fix, self.noise)
         else:
             self.motion = prediction.relocate(self.motion, fix)
@@ -124,9 +130,21 @@ class Classification:
         return self.assess(fix)
 
     def failed(self, outcome: Outcome[object]) -> Assessment:
-        """Weigh the reason of a failure."""
+        """Weigh the reason of a failure; after a blocked drive, doubt what was predicted since the fix."""
+        if outcome.reason is Reason.BLOCKED:
+            turned = abs(self._since.turn_rad) + LEAST_BLOCKED_TURN_RAD
+            along_m = abs(self._since.advance_m)
+            self.motion = prediction.doubt(self.motion, along_m, along_m * math.sin(turned), turned)
         self._weigh(Evidence(self._clock.now_s, {Channel.FAILURE: (FAILURE_CODES[outcome.reason], 0.0)}))
         return self.assess(self.predicted())
+
+    def doubt(self, along_m: float, across_m: float, heading_rad: float) -> None:
+        """Let the next fix lie elsewhere: standard deviations along and across the heading, and in it.
+
+        What the fix then says of the rover is still judged by the prediction before the doubt.
+        """
+        self._undoubted = self._undoubted or self.motion
+        self.motion = prediction.doubt(self.motion, along_m, across_m, heading_rad)
 
     def assess(self, pose: PoseEstimate, segment: Segment | None = None) -> Assessment:
         """The present weights, and where this leads on `segment`."""
@@ -148,13 +166,18 @@ class Classification:
         value = min(max(value, low), high)
         self.motion = prediction.adopt(self.motion, parameter, value, sigma * value)
 
+    @property
+    def _motion_explained(self) -> float:
+        """The weight of all hypotheses under which the rover moved as the model says."""
+        return sum(w for h, w in self.weights.items() if h is Hypothesis.NOMINAL or h in SEEING)
+
     def _weigh(self, evidence: Evidence) -> None:
         self.evidence = evidence
         self.weights = weigh(self.weights, evidence)
 
-    def _compare(self, fix: PoseEstimate) -> Evidence:
-        innovation, spread = prediction.innovate(self.motion, fix)
-        heading = float(self.motion.mean[prediction.HEADING])
+    def _compare(self, fix: PoseEstimate, motion: MotionState) -> Evidence:
+        innovation, spread = prediction.innovate(motion, fix)
+        heading = float(motion.mean[prediction.HEADING])
         c, s = math.cos(heading), math.sin(heading)
         along, cross = c * innovation[0] + s * innovation[1], -s * innovation[0] + c * innovation[1]
         across = (-s, c)
@@ -185,7 +208,7 @@ class Classification:
         return sum(self._since.currents) / len(self._since.currents)
 
     def _remember_baseline(self) -> None:
-        if not self._since.currents or self.weights[Hypothesis.NOMINAL] < 0.5:
+        if not self._since.currents or self._motion_explained < 0.5:
             return
         seen = self._mean_current()
         old = self._current_baseline_a

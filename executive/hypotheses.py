@@ -33,6 +33,17 @@ class Hypothesis(StrEnum):
     OVERSHOOT = "overshoot"
 
 
+SEEING = frozenset(
+    {
+        Hypothesis.MARKER_LOST,
+        Hypothesis.POOR_VIEW,
+        Hypothesis.ILLUMINATION_CHANGE,
+        Hypothesis.LOST_ROVER,
+    }
+)
+"""What may be wrong with seeing. Beside a fix that was had, these say nothing of how the rover moved."""
+
+
 class Channel(StrEnum):
     """Evidence channels. Ratios are measured over predicted; z values are normalised innovations."""
 
@@ -83,7 +94,7 @@ Signature = Mapping[Channel, Normal | Among]
 
 
 def _failing(*reasons: Reason) -> Among:
-    return Among(frozenset(FAILURE_CODES[r] for r in reasons), 0.7, 0.05)
+    return Among(frozenset(FAILURE_CODES[r] for r in reasons), 0.7, 0.01)
 
 
 _FOUR = frozenset({4.0})
@@ -167,3 +178,10 @@ def weigh(
         posterior[hypothesis] = weight
     total = sum(posterior.values())
     return {hypothesis: weight / total for hypothesis, weight in posterior.items()}
+
+
+def without(weights: Mapping[Hypothesis, float], refuted: Hypothesis) -> dict[Hypothesis, float]:
+    """The weights after one hypothesis was refuted."""
+    rest = {h: 0.0 if h is refuted else w for h, w in weights.items()}
+    total = sum(rest.values())
+    return {h: w / total for h, w in rest.items()}

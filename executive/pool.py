@@ -180,7 +180,7 @@ class Pool:
         if segment is not None and offset is not None:
             if abs(offset.cross_m) >= segment.off_track_m:
                 return "beyond the off-track margin any autonomous correction is forbidden"
-            room = segment.off_track_m - abs(offset.cross_m) - 2 * situation.pose.sigma_position_m
+            room = segment.off_track_m - abs(offset.cross_m) - 2 * situation.pose.sigma_across_m(segment)
             if strategy.excursion_m > room:
                 return f"may leave the margin: needs {strategy.excursion_m:.2f} m, has {room:.2f} m"
         if self._tried_here(strategy.name, segment, offset.along_m if offset else None):

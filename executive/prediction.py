@@ -208,6 +208,16 @@ def relocate(state: MotionState, fix: PoseEstimate) -> MotionState:
     )
 
 
+def doubt(state: MotionState, along_m: float, across_m: float, heading_rad: float) -> MotionState:
+    """The state with its pose less certain by these standard deviations, after a move that went wrong."""
+    c, s = math.cos(state.mean[HEADING]), math.sin(state.mean[HEADING])
+    body = np.array([[c, -s], [s, c]])
+    covariance = state.covariance.copy()
+    covariance[:2, :2] += body @ np.diag([along_m**2, across_m**2]) @ body.T
+    covariance[HEADING, HEADING] += heading_rad**2
+    return replace(state, covariance=frozen_array(covariance, (6, 6)))
+
+
 def adopt(state: MotionState, parameter: int, value: float, sigma: float) -> MotionState:
     """The state with one soil parameter set afresh, its correlations forgotten."""
     mean, covariance = state.mean.copy(), state.covariance.copy()

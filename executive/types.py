@@ -183,6 +183,12 @@ class PoseEstimate:
         """Largest horizontal standard deviation [m]."""
         return float(math.sqrt(max(np.linalg.eigvalsh(self.covariance[:2, :2])[-1], 0.0)))
 
+    def sigma_across_m(self, segment: Segment) -> float:
+        """Standard deviation across the segment's line [m]."""
+        c, s = math.cos(segment.bearing_rad), math.sin(segment.bearing_rad)
+        across = np.array([-s, c])
+        return float(math.sqrt(max(across @ self.covariance[:2, :2] @ across, 0.0)))
+
     @property
     def sigma_heading_rad(self) -> float:
         return float(math.sqrt(max(self.covariance[5, 5], 0.0)))

@@ -46,6 +46,7 @@ class SimTracks:
         self.speed_factors = [1.0, 1.0]  # a weak motor turns less than commanded; its encoder sees that
         self._turned_m = [0.0, 0.0]
         self._forces_n = (0.0, 0.0)
+        self._effort_n = 0.0
         self._over_s = 0.0
         self._drive: _Drive | None = None
         self._reading = PerTick(self._now, lambda: clock.ticks)
@@ -98,6 +99,9 @@ class SimTracks:
         if self._drive is None:
             return
         self._forces_n = (abs(forces_n[0]), abs(forces_n[1]))
+        left_n = math.copysign(forces_n[0], forces_n[0] * self._drive.left_m_s)
+        right_n = math.copysign(forces_n[1], forces_n[1] * self._drive.right_m_s)
+        self._effort_n = abs(left_n + right_n) / 2
         self._over_s = self._over_s + tick_s if self._overcurrent else max(0.0, self._over_s - tick_s)
         if self._over_s >= LIMIT_LASTS_S:
             self._finish(Reason.BLOCKED, "motor current over its limit")
@@ -106,10 +110,10 @@ class SimTracks:
 
     @property
     def _overcurrent(self) -> bool:
-        left_n, right_n = self._forces_n
+        """One motor over its limit, or both together; belts that pull against each other do not add up."""
         return (
-            max(left_n, right_n) > LIMIT_PER_WEIGHT_ONE * self._weight_n
-            or (left_n + right_n) / 2 > LIMIT_PER_WEIGHT_BOTH * self._weight_n
+            max(self._forces_n) > LIMIT_PER_WEIGHT_ONE * self._weight_n
+            or self._effort_n > LIMIT_PER_WEIGHT_BOTH * self._weight_n
         )
 
     def _finish(self, reason: Reason, detail: str = "") -> None:

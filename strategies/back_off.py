@@ -8,11 +8,11 @@ from executive.types import Reason
 
 STRATEGY = Strategy(
     name="back_off",
-    doc="Back off by 0.15 m, turn aside, pass, and let the trek find its line again.",
+    doc="Back off by 0.2 m, pass beside the path, and let the trek find its line again.",
     tree=Path(__file__).with_suffix(".yaml"),
     answers={Hypothesis.STUCK_ON_OBSTACLE: 1.0, Hypothesis.TILT_RISK: 0.7, Hypothesis.SLIP_LONGITUDINAL: 0.3},
     reasons={Reason.BLOCKED: 0.5, Reason.TILT: 0.4},
-    cost_s=480.0,
-    excursion_m=0.12,
+    cost_s=900.0,
+    excursion_m=0.195,
     tries_per_segment=3,
 )

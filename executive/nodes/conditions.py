@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from executive import guidance
-from executive.hypotheses import Hypothesis
+from executive.hypotheses import SEEING, Hypothesis
 from executive.nodes.base import In, Leaf
 from executive.types import Outcome, Point, PoseEstimate, Reason, Segment
 from executive.values import ANGLE, LENGTH, NUMBER, POINT, POSE, SEGMENT
@@ -83,7 +83,10 @@ class InsideMargin(Leaf):
 
 
 class AsPredicted(Leaf):
-    """Did the rover do what the motion model says? Fails when another explanation is likelier."""
+    """Did the rover move as the motion model says? Fails when another explanation is likelier.
+
+    A marker lost or a poor view is none: the fix was had, and its covariance says how good it is.
+    """
 
     below = In[float](NUMBER, "weight an anomaly may have", default=0.6)
 
@@ -92,7 +95,7 @@ class AsPredicted(Leaf):
     def step(self) -> Outcome[object]:
         assessment = self.services.classification.assess(self.services.classification.predicted())
         anomaly, weight = assessment.anomaly
-        if anomaly is assessment.likeliest and weight >= self.below:
+        if anomaly is assessment.likeliest and anomaly not in SEEING and weight >= self.below:
             return Outcome(Reason.UNEXPECTED, f"{anomaly} at {weight:.2f}")
         nominal = assessment.weights[Hypothesis.NOMINAL]
         return Outcome(Reason.DONE, f"nominal at {nominal:.2f}")

@@ -7,7 +7,7 @@ import math
 from executive import prediction
 from executive.nodes.base import FromTree, In, InOut, Leaf, Out
 from executive.types import Outcome, Point, PoseEstimate, Reason, Segment
-from executive.values import LENGTH, POINT, POSE, ROUTE, SEGMENT, TEXT
+from executive.values import ANGLE, LENGTH, POINT, POSE, ROUTE, SEGMENT, TEXT
 
 
 class BeginSegment(Leaf):
@@ -79,6 +79,17 @@ class Compensate(Leaf):
         classification.adopt(parameter, ratio, sigma=0.3)
         classification.settle()
         return Outcome(Reason.DONE, f"{self.of} ratio {ratio:.2f} adopted")
+
+
+class DoubtPrediction(Leaf):
+    """Believe the prediction less, so that the next fix may lie elsewhere."""
+
+    position = In[float](LENGTH, "standard deviation added to the place", default=0.15)
+    heading = In[float](ANGLE, "standard deviation added to the heading", default=math.radians(20.0))
+
+    def step(self) -> Outcome[object]:
+        self.services.classification.doubt(self.position, self.position, self.heading)
+        return Outcome(Reason.DONE)
 
 
 class DeadReckon(Leaf):

@@ -297,6 +297,8 @@ class _Located:
             return None
         if not isinstance(outcome.value, Centres):
             return Outcome(outcome.reason if not outcome.ok else Reason.DEVICE, "no centres")
+        if not np.isfinite(outcome.value.uv_px).all():
+            return Outcome(Reason.NOT_SEEN, "not every marker is seen")
         return Outcome(Reason.DONE, value=self._fit(outcome.value))
 
     def cancel(self) -> None:

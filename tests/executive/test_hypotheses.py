@@ -48,3 +48,10 @@ def test_good_news_brings_the_nominal_back() -> None:
     for _ in range(3):
         weights = after({Channel.TURN_RATIO: 1.0, Channel.ADVANCE_RATIO: 1.0}, weights)
     assert weights[Hypothesis.NOMINAL] > 0.8
+
+
+def test_a_refuted_hypothesis_leaves_its_weight_to_the_others():
+    weights = dict.fromkeys(Hypothesis, 0.0) | {Hypothesis.LOCALISATION_OUTLIER: 0.8, Hypothesis.NOMINAL: 0.2}
+    rest = without(weights, Hypothesis.LOCALISATION_OUTLIER)
+    assert rest[Hypothesis.LOCALISATION_OUTLIER] == 0.0
+    assert rest[Hypothesis.NOMINAL] == 1.0

@@ -1,0 +1,17 @@
+"""Fix and prediction contradict each other: doubt the prediction, and measure again."""
+
+from pathlib import Path
+
+from executive.hypotheses import Hypothesis
+from executive.pool import Strategy
+from executive.types import Reason
+
+STRATEGY = Strategy(
+    name="fresh_look",
+    doc="Widen the prediction and measure afresh: a false fix is not repeated, an unnoticed move is.",
+    tree=Path(__file__).with_suffix(".yaml"),
+    answers={Hypothesis.LOCALISATION_OUTLIER: 1.0, Hypothesis.LOST_ROVER: 0.2},
+    reasons={Reason.IMPLAUSIBLE: 0.5},
+    cost_s=90.0,
+    tries_per_segment=4,
+)
