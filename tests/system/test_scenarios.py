@@ -1,4 +1,4 @@
-"""The shipped scenarios keep what they expect of themselves, in the tier that is quick enough to ask often."""
+"""The shipped scenarios keep what they expect of themselves, in the tier that is quick enough to ask."""
 
 from pathlib import Path
 
