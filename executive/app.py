@@ -96,7 +96,9 @@ def run(file: Path, options: RunOptions) -> Finished:
 
 
 def report(folder: Path) -> Path:
-    """(Re)write the report of a run folder from its record."""
+    """(Re)write the report of a run folder from its record; RecordError where there is none."""
+    if not (folder / "record.mcap").is_file():
+        raise RecordError(f"{folder}: got no record.mcap, expected a run folder")
     return write_report(folder, _tree_svg(folder))
 
 

@@ -189,7 +189,9 @@ def _backend(source: Source, name: str) -> BackendSpec:
 
 
 def _world(source: Source, backend: BackendSpec) -> BaseModel:
-    if not isinstance(source.data, dict) or "world" not in source.data:
+    if not isinstance(source.data, dict):
+        raise ConfigError([])  # told where the file as a whole is read
+    if "world" not in source.data:
         source = source.graft(("world",), Source({}, {(): source.at(())}, folders={(): source.folder()}))
     return parse(source, backend.world_model, ("world",))
 

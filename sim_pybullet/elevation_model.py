@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import math
+import struct
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +19,9 @@ from sim_pybullet.terrain import Terrain, TerrainError
 MODEL_PIXEL_SCALE = "ModelPixelScaleTag"
 NO_DATA = "GDAL_NODATA"
 DEFAULT_LANDER_X_M = 2.0
+UNREADABLE = (tifffile.TiffFileError, ValueError, TypeError, LookupError, OSError, struct.error)
+
+logging.getLogger("tifffile").addHandler(logging.NullHandler())  # what it has to say comes as a TerrainError
 
 
 @dataclass(frozen=True)
@@ -85,7 +90,7 @@ def _read_tiff(path: Path) -> tuple[Array, float | None]:
             if hole is not None:
                 heights[heights == float(hole.value)] = np.nan
             return heights, None if tag is None else _square_cell(path, tag.value)
-    except (tifffile.TiffFileError, ValueError, OSError) as error:
+    except UNREADABLE as error:
         raise TerrainError(f"{path}: not a readable TIFF: {error}") from error
 
 

@@ -300,6 +300,8 @@ def _put(data: Any, place: Place, value: Any) -> Any:
         return value
     step, rest = place[0], place[1:]
     if isinstance(data, list) and isinstance(step, int):
+        if step >= len(data):
+            raise IndexError(f"{step} is beyond the end of a list of {len(data)}")
         return [_put(old, rest, value) if i == step else old for i, old in enumerate(data)]
     if data is None:
         data = {}

@@ -39,6 +39,8 @@ class Setting:
     tree: str = "navigate"
     blind_every: int = 0
     pixel_sigma: float = 0.5
+    backwards: bool = False
+    """Strategies take their turns from the last to the first."""
 
     def text(self) -> str:
         points = [{"x": f"{2.2 + 0.06 * i} m", "y": f"{-0.5 + ASIDE_M[i % 2]} m"} for i in range(STEPS + 1)]
@@ -56,6 +58,7 @@ class Setting:
 SETTINGS = (
     Setting(),
     Setting(blind_every=1),
+    Setting(blind_every=1, backwards=True),
     Setting(blind_every=3),
     Setting(pixel_sigma=20.0),
     Setting(pixel_sigma=15.0, blind_every=4),
@@ -134,10 +137,10 @@ class Ended:
 class InTurn(Pool):
     """Tries the strategies at hand one after the other, whatever the matter is, but for an overshoot."""
 
-    asked = 0
+    asked, backwards = 0, False
 
     def choose(self, situation: Situation, at_hand: Any = None) -> Choice:
-        names = [name for name in sorted(self.strategies) if name in at_hand]
+        names = [name for name in sorted(self.strategies, reverse=self.backwards) if name in at_hand]
         name = names[self.asked % len(names)]
         if situation.failure.reason is Reason.OVERSHOOT and "overshoot_avoidance" in names:
             name = "overshoot_avoidance"
@@ -197,13 +200,15 @@ def prepare(setting: Setting, folder: Path, diary: Diary) -> tuple[Run, BuiltTre
     journal = RunJournal(recorder, backend.clock, route)
     localizer = Blinking(backend.devices, backend.rig, backend.clock)
     localizer.every = setting.blind_every
+    pool = InTurn(strategies(), journal.strategy)
+    pool.backwards = setting.backwards
     services = Services(
         clock=backend.clock,
         devices=backend.devices,
         rig=backend.rig,
         localizer=localizer,
         classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
-        pool=InTurn(strategies(), journal.strategy),
+        pool=pool,
         journal=journal,
     )
     built = build(scenario.tree, services, {"route": route}, trees())
