@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from executive.hypotheses import FAILURE_CODES, PRIOR, Channel, Evidence, Hypothesis, weigh
+from executive.hypotheses import FAILURE_CODES, PRIOR, Channel, Evidence, Hypothesis, weigh, without
 from executive.types import Reason
 
 
