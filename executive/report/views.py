@@ -15,7 +15,7 @@ from executive.report.figure import Figure, duration
 from executive.report.gather import Run
 from executive.telemetry.events import AnnotationsEvent, ImageEvent
 
-_MOST = 6
+_MOST = 4
 _DETECTED, _REPROJECTED, _WINDOW = "#ffa033", "#46c8ff", "#7be0a0"
 
 
@@ -28,11 +28,13 @@ class View(NamedTuple):
 
 
 def views(run: Run) -> Figure | None:
-    """Up to six pairs of pictures: the first and last, and those with the fewest markers or at strategies."""
+    """Pairs of pictures: up to four localisations, between the first and the last full frame."""
     found = _views(run)
     if not found:
         return None
-    chosen = _chosen(run, sorted(found))
+    looks = sorted(t for t, pair in found.items() if any(view.marks for view in pair))
+    frames = sorted(set(found) - set(looks))
+    chosen = sorted([*frames[:1], *_chosen(run, looks or frames), *frames[1:][-1:]])
     pairs = "".join(_pair(time_s, found[time_s]) for time_s in chosen)
     entries = [
         ("ring", _DETECTED, "detected"),
@@ -40,9 +42,10 @@ def views(run: Run) -> Figure | None:
         ("dash", _WINDOW, "window read out"),
     ]
     caption = (
-        f"{len(chosen)} of the {len(found)} localisations with pictures, left and right camera side by side, "
-        "contrast stretched and cut to the neighbourhood of the read-out window. A circle is a marker found "
-        "in the difference images, a blue dot where the estimated pose would put it: the two should meet."
+        f"{len(chosen)} of the {len(found)} pictures kept, left and right camera side by side, contrast "
+        "stretched. Full frames are taken at way-points, read-out windows at localisations. A circle is a "
+        "marker found in the difference images, a blue dot where the estimated pose would put it: the two "
+        "should meet."
     )
     return Figure(
         "views", "Through the cameras", legend(entries) + f"<div class='views'>{pairs}</div>", caption
