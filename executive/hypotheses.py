@@ -123,7 +123,7 @@ SIGNATURES: Mapping[Hypothesis, Signature] = {
         Channel.ADVANCE_RATIO: Normal(0.05, 0.12),
         Channel.TURN_RATIO: Normal(0.05, 0.12),
         Channel.HEADING_Z: Normal(0.0, 5.0),
-        Channel.CURRENT_RATIO: Normal(2.5, 0.8),
+        Channel.CURRENT_RATIO: Normal(1.6, 0.8),  # belts that slide draw little more than rolling ones
         Channel.FAILURE: _failing(Reason.BLOCKED),
     },
     Hypothesis.TILT_RISK: {Channel.TILT: Normal(0.55, 0.12), Channel.FAILURE: _failing(Reason.TILT)},

@@ -135,3 +135,36 @@ def test_severity_is_the_time_to_the_off_track_margin(bench: Bench) -> None:
     assessment = bench.mind.assess(pose(2.5, 0.10, math.radians(30.0)), SEGMENT)
     assert assessment.time_to_margin_s == pytest.approx((0.25 - 0.10) / (0.0014 * math.sin(math.radians(30))))
     assert bench.mind.assess(pose(2.5, 0.10, 0.0), SEGMENT).time_to_margin_s is None
+
+
+def test_a_blocked_drive_leaves_doubt_along_its_way(bench: Bench) -> None:
+    bench.drive(0.1, 0.1)
+    before = bench.mind.predicted()
+    bench.mind.failed(Outcome(Reason.BLOCKED))
+    doubted = bench.mind.predicted()
+    c, s = math.cos(doubted.heading_rad), math.sin(doubted.heading_rad)
+    ahead = Segment(Point(0.0, 0.0), Point(c, s), 0.03, 0.25, 0.03)
+    aside = Segment(Point(0.0, 0.0), Point(-s, c), 0.03, 0.25, 0.03)
+    assert doubted.sigma_across_m(aside) == pytest.approx(0.1 * bench.mind.motion.advance, rel=0.1)
+    assert doubted.sigma_across_m(ahead) < before.sigma_across_m(ahead) + 0.02
+
+
+def test_a_fix_after_doubt_still_tells_that_the_rover_is_stuck(bench: Bench) -> None:
+    for _ in range(3):
+        bench.advance(0.1)
+    at = bench.fix()
+    bench.drive(0.1, 0.1)  # the belts turn, yet the rover is seen where it was
+    bench.mind.doubt(0.15, 0.15, math.radians(20.0))
+    stuck = bench.mind.fixed(replace(at, time_s=bench.backend.clock.now_s))
+    assert stuck.likeliest is Hypothesis.STUCK_ON_OBSTACLE
+    assert stuck.weights[Hypothesis.LOCALISATION_OUTLIER] == 0.0
+
+
+def test_a_marker_less_is_told_but_does_not_keep_the_model_from_learning(bench: Bench) -> None:
+    for _ in range(4):
+        travel = 0.1
+        bench.drive(travel, travel)
+        lost = bench.mind.fixed(bench.fix(markers=3))
+    assert lost.likeliest is Hypothesis.MARKER_LOST
+    assert bench.mind.motion.advance == pytest.approx(0.95, abs=0.01)
+    assert math.sqrt(bench.mind.motion.covariance[3, 3]) < 0.05  # it began at 0.06 and grows with travel

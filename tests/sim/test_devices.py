@@ -223,3 +223,19 @@ def test_call_to_ground_is_answered_after_forty_minutes() -> None:
         link.settle()
     assert clock.now_s == 2400.0
     assert action.poll().ok
+
+
+@pytest.mark.parametrize(
+    ("forces", "blocked"), [((0.3, -0.3), False), ((0.3, 0.3), True), ((0.38, 0.0), True)]
+)
+def test_belts_that_pull_against_each_other_do_not_block(
+    world_of: WorldMaker, forces: tuple[float, float], blocked: bool
+) -> None:
+    """Shares of the weight; ahead is positive, both belts driving ahead."""
+    tracks = world_of(plain()).tracks
+    action = tracks.drive(0.1, 0.1, 0.0014)
+    weight_n = world_of(plain()).weight_n
+    for _ in range(12):
+        tracks.feel((forces[0] * weight_n, forces[1] * weight_n), 1.0)
+    outcome = action.poll()
+    assert (outcome is not None and outcome.reason is Reason.BLOCKED) is blocked

@@ -1,4 +1,4 @@
-"""The shipped scenarios keep what they expect of themselves, in the tier that is quick enough to ask."""
+"""The shipped scenarios keep what they expect of themselves, asked in the tier that is quick enough."""
 
 from pathlib import Path
 
@@ -14,7 +14,11 @@ NAMES = sorted(path.stem for path in SCENARIOS.glob("*.yaml"))
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name != SURVEYED])
 def test_a_shipped_scenario_has_no_problem(name):
+<<<<<<< HEAD
     assert not check_file(SCENARIOS / f"{name}.yaml")
+=======
+    assert check_file(SCENARIOS / f"{name}.yaml") == ()
+>>>>>>> t2
 
 
 @pytest.mark.sim
