@@ -14,11 +14,7 @@ NAMES = sorted(path.stem for path in SCENARIOS.glob("*.yaml"))
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name != SURVEYED])
 def test_a_shipped_scenario_has_no_problem(name):
-<<<<<<< HEAD
     assert not check_file(SCENARIOS / f"{name}.yaml")
-=======
-    assert check_file(SCENARIOS / f"{name}.yaml") == ()
->>>>>>> t2
 
 
 @pytest.mark.sim
