@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
@@ -51,9 +52,9 @@ class Run:
 
 def execute(run: Run) -> RunEnd:
     """Run the tree to its end. Always: leaves terminated, rover at rest, stop written, record closed."""
-    end = RunEnd("error", "the run was interrupted")
+    end, changes = RunEnd("error", "the run was interrupted"), _Changes(run)
     try:
-        end = _loop(run)
+        end = _loop(run, changes)
         if why := run.invalid():
             end = RunEnd("invalid", f"{why}; the run ended {end.outcome}")
     except KeyboardInterrupt:
@@ -61,7 +62,7 @@ def execute(run: Run) -> RunEnd:
     except Exception as defect:
         end = ended_by(defect)
     finally:
-        end = _rest(run, end)
+        end = _rest(run, changes, end)
     return end
 
 
@@ -70,8 +71,8 @@ def ended_by(defect: BaseException) -> RunEnd:
     return RunEnd("error", _one_line(defect), defect)
 
 
-def _loop(run: Run) -> RunEnd:
-    watch, changes = run.stopwatch, _Changes(run)
+def _loop(run: Run, changes: _Changes) -> RunEnd:
+    watch = run.stopwatch
     limit_ticks = run.services.clock.ticks_for(run.time_limit_s)
     sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
     while True:
@@ -91,7 +92,8 @@ def _loop(run: Run) -> RunEnd:
             return RunEnd("time_limit", f"still under way after {run.time_limit_s:.0f} s")
         with watch.measure("advance"):
             run.backend.advance()
-        run.progress(run.journal, run.services.clock.now_s)
+        with suppress(Exception):  # who only looks on must not break the run
+            run.progress(run.journal, run.services.clock.now_s)
 
 
 def _ended(run: Run) -> RunEnd:
@@ -105,10 +107,12 @@ def _ended(run: Run) -> RunEnd:
     return RunEnd("safe_hold", reason)
 
 
-def _rest(run: Run, end: RunEnd) -> RunEnd:
+def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
     """Terminate every entered leaf, stop the rover, close the record; each whatever becomes of the others."""
     steps: tuple[Callable[[], object], ...] = (
+        changes.write,
         run.trace.terminate_entered,
+        changes.write,
         run.backend.safe_stop,
         lambda: run.journal.write(events.Stop(end.outcome, end.reason)),
         run.recorder.close,
