@@ -17,6 +17,7 @@ from executive.types import CabinReading, Outcome, PoseEstimate, Reason, Segment
 
 AMBIGUITY = 0.8  # a second anomaly this close to the first is a tie
 LEAST_WEIGHT = 0.02  # a hypothesis below this is no reason to act
+LEAST_FITNESS = 0.1  # below this a remedy is a shot in the dark; ground decides better
 SAME_PLACE_M = 0.15
 
 
@@ -163,8 +164,10 @@ class Pool:
         weights = situation.assessment.weights
         explained = sum(weights[h] * a for h, a in strategy.answers.items() if weights[h] >= LEAST_WEIGHT)
         fitness = explained + strategy.reasons.get(situation.failure.reason, 0.0)
+        if fitness < LEAST_FITNESS:
+            return Candidate(strategy.name, fitness, "does not answer what is likely")
         fitness /= 1 + strategy.cost_s / self._worthwhile_s(situation)
-        return Candidate(strategy.name, fitness, self._refusal(strategy, situation, fitness))
+        return Candidate(strategy.name, fitness, self._refusal(strategy, situation))
 
     @staticmethod
     def _worthwhile_s(situation: Situation) -> float:
@@ -173,9 +176,7 @@ class Pool:
         remaining_m = offset.remaining_m if offset else 1.0
         return 1200.0 / (1.0 + remaining_m)
 
-    def _refusal(self, strategy: Strategy, situation: Situation, fitness: float) -> str | None:
-        if fitness <= LEAST_WEIGHT:
-            return "does not answer what is likely"
+    def _refusal(self, strategy: Strategy, situation: Situation) -> str | None:
         segment, offset = situation.segment, situation.pose.on(situation.segment).track
         if segment is not None and offset is not None:
             if abs(offset.cross_m) >= segment.off_track_m:

@@ -22,10 +22,11 @@ from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
 from executive.errors import ConfigError, Problem
 from executive.fault_entries import ResolvedFault, Setting, fault_entries
+from executive.pool import Strategy
 from executive.rig import RigCalibration
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
-from executive.tree.spec import TreeSpec
+from executive.tree.spec import TreeSpec, walk
 
 
 @dataclass(frozen=True)
@@ -111,6 +112,8 @@ def resolve(source: Source) -> ResolvedScenario:
     tree_path = problems.attempt(lambda: _tree_path(source))
     tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
     inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
+    if tree is not None and faults:
+        problems.found.extend(_unknown_nodes(source, faults, tree))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
@@ -231,6 +234,25 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
             values[name] = problems.attempt(lambda n=name, k=kind: literal(source, (*place, n), k))  # type: ignore[misc]
     problems.check()
     return values
+
+
+def _unknown_nodes(source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec) -> list[Problem]:
+    """Faults that wait for a node which neither the tree nor a strategy has: they could never fire."""
+    waited = [(i, f.start.node) for i, f in enumerate(faults) if f.start.node is not None]
+    if not waited:
+        return []
+    known = {node.name for _, node in walk(tree)}
+    for name in plugins.found(plugins.STRATEGIES):
+        strategy = plugins.load(plugins.STRATEGIES, name, Strategy)
+        if isinstance(strategy, Strategy):
+            known |= {node.name for _, node in walk(load_tree(strategy.tree))}
+    return [
+        source.at(("faults", i, "from", "node")).problem(
+            f'got the node "{node}", which the tree {tree.name} does not have{guess(node, sorted(known))}'
+        )
+        for i, node in waited
+        if node not in known
+    ]
 
 
 def _check_tier(source: Source, tier: str, backend: BackendSpec) -> None:

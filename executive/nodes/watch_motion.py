@@ -9,7 +9,7 @@ import numpy as np
 from executive.nodes.base import In, Leaf
 from executive.ports import Action, LocaliseRequest
 from executive.types import Outcome, PoseEstimate, Quality, Reason
-from executive.values import NUMBER
+from executive.values import LENGTH, NUMBER
 
 
 class WatchMotion(Leaf):
@@ -20,6 +20,9 @@ class WatchMotion(Leaf):
     """
 
     gate = In[float](NUMBER, "standard deviations that the tendency may be off", default=4.0)
+    allowance = In[float](
+        LENGTH, "what a moving shadow may shift the middle of the fragments by", default=0.25
+    )
 
     outcomes = (Reason.UNEXPECTED,)
     _action: Action[PoseEstimate] | None = None
@@ -52,8 +55,9 @@ class WatchMotion(Leaf):
     def _judge(self, seen: PoseEstimate) -> Outcome[object] | None:
         predicted = self._predicted_at(seen.time_s)
         off = np.array([seen.x_m - predicted.x_m, seen.y_m - predicted.y_m])
+        beyond = max(0.0, 1.0 - self.allowance / max(float(np.hypot(*off)), 1e-9)) * off
         spread = seen.covariance[:2, :2] + predicted.covariance[:2, :2]
-        distance = math.sqrt(float(off @ np.linalg.solve(spread, off)))
+        distance = math.sqrt(float(beyond @ np.linalg.solve(spread, beyond)))
         if distance <= self.gate:
             self.services.journal.estimate(seen)
             return None

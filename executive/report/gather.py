@@ -42,7 +42,8 @@ class Run:
     @cached_property
     def estimates(self) -> list[PoseEstimate]:
         """What the executive believed, in order of time; a motion tendency is only watched."""
-        return [at.event for at in self.history.all(PoseEstimate) if at.event.source is not Source.TREND]
+        every = (at.event for at in self.history.all(PoseEstimate))
+        return [p for p in every if p.source is not Source.TREND and np.isfinite(p.position_site_m).all()]
 
     @cached_property
     def errors(self) -> list[PoseError] | None:

@@ -31,6 +31,9 @@ SCHEMA = 1
 NO_STOP = "the record ends without a stop"
 VISION_REASONS = frozenset({Reason.NOT_SEEN, Reason.POOR_VIEW, Reason.UNSTABLE_IMAGES, Reason.IMPLAUSIBLE})
 NOMINAL = "nominal"
+DETECTION_GRACE_S = (
+    600.0  # a check may come some time after a passing fault; later, it is about something else
+)
 _TRUTH_KEYS = (
     "final_error_m",
     "waypoint_errors_m",
@@ -207,7 +210,8 @@ def fault_rows(history: History, world: History) -> list[dict[str, object]]:
         on = next((at for at in events if at.event.name == name and at.event.active), None)
         off = next((at for at in events if at.event.name == name and not at.event.active), None)
         diagnosis = on.event.hypothesis if on else ""
-        detected = _leads(history, diagnosis, on.time_s) if on else None
+        until = off.time_s + DETECTION_GRACE_S if off else math.inf
+        detected = _leads(history, diagnosis, on.time_s, until) if on else None
         recovered = _leads(history, NOMINAL, detected) if detected is not None else None
         rows.append(
             {
@@ -228,10 +232,10 @@ def leading(event: HypothesesEvent) -> str | None:
     return max(event.weights, key=event.weights.__getitem__, default=None)
 
 
-def _leads(history: History, hypothesis: str, from_s: float) -> float | None:
-    """The first time at or after `from_s` when the hypothesis has the largest weight [s]."""
+def _leads(history: History, hypothesis: str, from_s: float, until_s: float = math.inf) -> float | None:
+    """The first time from `from_s` to `until_s` when the hypothesis has the largest weight [s]."""
     for time_s, event in history.all(HypothesesEvent):
-        if time_s >= from_s and leading(event) == hypothesis:
+        if from_s <= time_s <= until_s and leading(event) == hypothesis:
             return time_s
     return None
 
