@@ -152,6 +152,7 @@ def show(tree: str, form: str, output: Path | None) -> int:
     """
     from executive import app
     from executive.config.validate import guess, listed
+    from executive.pool_plugins import load_strategies, strategy_trees
     from executive.show import FORMATS, draw
     from executive.tree.load import load_tree
 
@@ -162,7 +163,7 @@ def show(tree: str, form: str, output: Path | None) -> int:
         drawing = app.draw_run(path, form)
     else:
         spec = load_tree(path if path.is_file() or "/" in tree else tree)
-        drawing = draw(spec, form, app.strategy_trees(app.load_strategies()))
+        drawing = draw(spec, form, strategy_trees(load_strategies()))
     content = drawing if isinstance(drawing, bytes) else drawing.encode()
     if output is not None:
         output.write_bytes(content)

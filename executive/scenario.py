@@ -22,7 +22,7 @@ from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
 from executive.errors import ConfigError, Problem
 from executive.fault_entries import ResolvedFault, Setting, fault_entries
-from executive.pool import Strategy
+from executive.pool_plugins import load_strategies, strategy_trees
 from executive.rig import RigCalibration
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
@@ -242,10 +242,8 @@ def _unknown_nodes(source: Source, faults: tuple[ResolvedFault, ...], tree: Tree
     if not waited:
         return []
     known = {node.name for _, node in walk(tree)}
-    for name in plugins.found(plugins.STRATEGIES):
-        strategy = plugins.load(plugins.STRATEGIES, name, Strategy)
-        if isinstance(strategy, Strategy):
-            known |= {node.name for _, node in walk(load_tree(strategy.tree))}
+    for remedy in strategy_trees(load_strategies()).values():
+        known |= {node.name for _, node in walk(remedy)}
     return [
         source.at(("faults", i, "from", "node")).problem(
             f'got the node "{node}", which the tree {tree.name} does not have{guess(node, sorted(known))}'

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from executive.app import load_strategies, prior_pose, strategy_trees
+from executive.assembly import prior_pose
 from executive.backends import BackendRequest
 from executive.classification import Classification
 from executive.clock import Stopwatch
@@ -19,6 +19,7 @@ from executive.journal import RunJournal
 from executive.nodes.base import Leaf
 from executive.nodes.services import Services
 from executive.pool import Choice, Pool, Situation, Strategy
+from executive.pool_plugins import load_strategies, strategy_trees
 from executive.ports import LocaliseRequest
 from executive.runner import Run, RunEnd, execute
 from executive.scenario import ResolvedScenario, as_scenario, resolve

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from executive import plugins
-from executive.app import load_strategies, strategy_trees
 from executive.backends import BackendRequest, BackendSpec
 from executive.cli import invoke
 from executive.nodes.base import Direction
 from executive.pool import Strategy
+from executive.pool_plugins import load_strategies, strategy_trees
 from executive.rig import RigCalibration
 from executive.testing import check_backend, check_strategy
 from executive.tree.load import load_tree

@@ -1,0 +1,112 @@
+"""A run put together: robot, faults, localizer, classification, pool and tree."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from executive.backends import BackendRequest
+from executive.classification import Classification
+from executive.clock import Stopwatch
+from executive.errors import PluginError
+from executive.fault_schedule import FaultSchedule
+from executive.journal import RunJournal
+from executive.nodes.services import Services
+from executive.pool import Pool, Strategy
+from executive.pool_plugins import strategy_trees
+from executive.ports import Backend, Devices, Localizer
+from executive.prediction import quat_from_heading_tilt
+from executive.runner import Run
+from executive.scenario import ResolvedScenario
+from executive.telemetry import events
+from executive.telemetry.recorder import Recorder
+from executive.telemetry.versions import versions
+from executive.tree.build import build
+from executive.types import PoseEstimate, Segment, Source
+
+TICK_S = 1.0
+
+
+def prior_pose(first: Segment) -> PoseEstimate:
+    """What ground knows before the first fix: the rover stands near the first way-point, heading outward."""
+    heading = math.atan2(first.start.y_m, first.start.x_m)
+    return PoseEstimate(
+        time_s=0.0,
+        position_site_m=(first.start.x_m, first.start.y_m, 0.0),
+        quat_site_body=quat_from_heading_tilt(heading, 0.0, 0.0),
+        covariance=np.diag([0.05**2, 0.05**2, 0.20**2, 0.1**2, 0.1**2, 0.6**2]),
+        source=Source.PRIOR,
+    )
+
+
+def write_start(recorder: Recorder, scenario: ResolvedScenario) -> None:
+    start = events.Start(scenario.name, scenario.dump(), scenario.seed, TICK_S, scenario.tier, versions())
+    recorder.write(start, 0.0)
+    recorder.write(events.RouteEvent(scenario.mission.route()), 0.0)
+    recorder.flush()
+
+
+def set_up(
+    scenario: ResolvedScenario,
+    strategies: tuple[Strategy, ...],
+    localizer: object,
+    request: BackendRequest,
+    recorder: Recorder,
+    watch: Stopwatch,
+) -> Run:
+    """The robot and all that drives it; what fails half way leaves the robot at rest and released."""
+    with watch.measure("setup"):
+        backend = scenario.backend.create(request)
+    try:
+        return _prepare(scenario, strategies, localizer, backend, recorder, watch)
+    except BaseException:
+        backend.safe_stop()
+        backend.close()
+        raise
+
+
+def _prepare(
+    scenario: ResolvedScenario,
+    strategies: tuple[Strategy, ...],
+    make_localizer: object,
+    backend: Backend,
+    recorder: Recorder,
+    watch: Stopwatch,
+) -> Run:
+    route = scenario.mission.route()
+    journal = RunJournal(recorder, backend.clock, route)
+    faults = FaultSchedule(scenario.faults, backend)
+    journal.hear = faults.sightings.hear
+    devices = faults.wrap(backend.devices)
+    services = Services(
+        clock=backend.clock,
+        devices=devices,
+        rig=backend.rig,
+        localizer=_localizer(make_localizer, devices, backend),
+        classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
+        pool=Pool(strategies, journal.strategy),
+        journal=journal,
+    )
+    inputs = {"route": route, **scenario.mission.tree_inputs}
+    built = build(scenario.tree, services, inputs, strategy_trees(strategies))
+    return Run(
+        root=built.root,
+        trace=built.trace,
+        paths=built.paths,
+        services=services,
+        backend=backend,
+        journal=journal,
+        recorder=recorder,
+        stopwatch=watch,
+        time_limit_s=scenario.time_limit_s,
+        each_tick=lambda: faults.tick(journal, route),
+        invalid=lambda: faults.conclude(journal),
+    )
+
+
+def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:
+    if not callable(make):
+        raise PluginError(f"got a localizer {make!r}, expected something to call")
+    made: Localizer = make(devices=devices, rig=backend.rig, clock=backend.clock)
+    return made

@@ -1,0 +1,25 @@
+"""The strategies that are installed, with their trees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from executive import plugins
+from executive.pool import Strategy
+from executive.tree.load import load_tree
+from executive.tree.spec import TreeSpec
+
+
+def load_strategies() -> tuple[Strategy, ...]:
+    """Every strategy registered, by name; PluginError for one that is not a `Strategy`."""
+    loaded = []
+    for name in plugins.found(plugins.STRATEGIES):
+        strategy = plugins.load(plugins.STRATEGIES, name, Strategy)
+        if isinstance(strategy, Strategy):
+            loaded.append(strategy)
+    return tuple(loaded)
+
+
+def strategy_trees(strategies: Sequence[Strategy]) -> dict[str, TreeSpec]:
+    """The strategies' own sub-trees by name; ConfigError with what is wrong in them."""
+    return {strategy.name: load_tree(strategy.tree) for strategy in strategies}
