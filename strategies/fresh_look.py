@@ -13,5 +13,6 @@ STRATEGY = Strategy(
     answers={Hypothesis.LOCALISATION_OUTLIER: 1.0, Hypothesis.LOST_ROVER: 0.2},
     reasons={Reason.IMPLAUSIBLE: 0.5},
     cost_s=90.0,
+    excursion_m=0.03,  # what it finds may be that something pushes the rover aside
     tries_per_segment=4,
 )

@@ -13,5 +13,6 @@ STRATEGY = Strategy(
     answers={Hypothesis.SLIP_TURNING: 1.0, Hypothesis.TRACK_ASYMMETRY: 0.6},
     reasons={Reason.OFF_HEADING: 0.3},
     cost_s=60.0,
+    excursion_m=0.03,  # what turns against something that was not seen may push the rover aside
     tries_per_segment=4,
 )

@@ -12,6 +12,7 @@ from executive.ports import Action
 from executive.types import Outcome, PoseEstimate, Reason, Segment, TrackReading
 from executive.values import ANGLE, POSE, SEGMENT
 
+SIGMAS = 2.0
 DRIVING_OUTCOMES: tuple[Reason, ...] = (
     Reason.DONE,
     Reason.BLOCKED,
@@ -48,9 +49,9 @@ class DrivingLeaf(ActionLeaf):
         if tilt is not None and math.hypot(tilt.roll_rad, tilt.pitch_rad) > self.tilt_limit:
             return Outcome(Reason.TILT, f"{math.degrees(math.hypot(tilt.roll_rad, tilt.pitch_rad)):.1f} deg")
         if pose.track is not None and self.segment is not None:
-            cross = abs(pose.track.cross_m)
-            if cross >= self.segment.off_track_m:
-                return Outcome(Reason.OFF_TRACK, f"predicted cross-track error {cross * 1e3:.0f} mm")
+            worst = abs(pose.track.cross_m) + SIGMAS * pose.sigma_across_m(self.segment)
+            if worst >= self.segment.off_track_m:
+                return Outcome(Reason.OFF_TRACK, f"cross-track error may be {worst * 1e3:.0f} mm")
         return None
 
     def finish(self, outcome: Outcome[TrackReading]) -> Outcome[Any]:
