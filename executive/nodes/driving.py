@@ -10,9 +10,8 @@ from executive.nodes.action import ActionLeaf
 from executive.nodes.base import FromTree, In, InOut
 from executive.ports import Action
 from executive.types import Outcome, PoseEstimate, Reason, Segment, TrackReading
-from executive.values import ANGLE, POSE, SEGMENT
+from executive.values import ANGLE, NUMBER, POSE, SEGMENT
 
-SIGMAS = 2.0
 DRIVING_OUTCOMES: tuple[Reason, ...] = (
     Reason.DONE,
     Reason.BLOCKED,
@@ -28,6 +27,7 @@ class DrivingLeaf(ActionLeaf):
     pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]
     tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
+    sigmas = In[float](NUMBER, "standard deviations to keep from the off-track margin", default=2.0)
 
     outcomes: ClassVar[tuple[Reason, ...]] = DRIVING_OUTCOMES
 
@@ -49,7 +49,7 @@ class DrivingLeaf(ActionLeaf):
         if tilt is not None and math.hypot(tilt.roll_rad, tilt.pitch_rad) > self.tilt_limit:
             return Outcome(Reason.TILT, f"{math.degrees(math.hypot(tilt.roll_rad, tilt.pitch_rad)):.1f} deg")
         if pose.track is not None and self.segment is not None:
-            worst = abs(pose.track.cross_m) + SIGMAS * pose.sigma_across_m(self.segment)
+            worst = abs(pose.track.cross_m) + self.sigmas * pose.sigma_across_m(self.segment)
             if worst >= self.segment.off_track_m:
                 return Outcome(Reason.OFF_TRACK, f"cross-track error may be {worst * 1e3:.0f} mm")
         return None
