@@ -9,6 +9,7 @@ import numpy as np
 from executive.backends import BackendRequest
 from executive.classification import Classification
 from executive.clock import Stopwatch
+from executive.command_log import logged
 from executive.errors import PluginError
 from executive.fault_schedule import FaultSchedule
 from executive.journal import RunJournal
@@ -78,7 +79,7 @@ def _prepare(
     journal = RunJournal(recorder, backend.clock, route)
     faults = FaultSchedule(scenario.faults, backend)
     journal.hear = faults.sightings.hear
-    devices = faults.wrap(backend.devices)
+    devices = logged(faults.wrap(backend.devices), journal.write)
     services = Services(
         clock=backend.clock,
         devices=devices,
