@@ -19,6 +19,7 @@ AMBIGUITY = 0.8  # a second anomaly this close to the first is a tie
 LEAST_WEIGHT = 0.02  # a hypothesis below this is no reason to act
 LEAST_FITNESS = 0.1  # below this a remedy is a shot in the dark; ground decides better
 SAME_PLACE_M = 0.15
+PROGRESS_M = 0.05
 
 
 @dataclass(frozen=True)
@@ -135,11 +136,19 @@ class Pool:
             )
         return choice
 
-    def conclude(self, helped: bool) -> None:
-        """Close the open attempt: what had failed now went well, or failed again."""
-        if self.attempts and self.attempts[-1].helped is None:
-            self.attempts[-1].helped = helped
-            self._note(self.attempts[-1])
+    def conclude(self, helped: bool, along_m: float | None = None) -> None:
+        """Close the open attempt: what had failed now went well, or failed again.
+
+        What fails again only after a piece of way, `along_m` the place along the segment, was helped.
+        """
+        if not self.attempts or self.attempts[-1].helped is not None:
+            return
+        attempt = self.attempts[-1]
+        got_on = (
+            along_m is not None and attempt.along_m is not None and along_m - attempt.along_m > PROGRESS_M
+        )
+        attempt.helped = helped or got_on
+        self._note(attempt)
 
     def _decide(
         self, fit: list[Candidate], situation: Situation, anomaly: Hypothesis, weight: float

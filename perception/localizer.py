@@ -63,6 +63,7 @@ _SEARCH = tuple(
     for pan, tilt in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1))
 )
 LADDER = (Try(1.0), Try(2.5, 2.0), Try(None), *_SEARCH)
+FULL_FRAMES = 2  # the rung from which on windows hide nothing
 
 
 class LedStereoLocalizer:
@@ -117,7 +118,8 @@ class LedStereoLocalizer:
             if problem is None and isinstance(choice, Choice):
                 return Outcome(Reason.DONE, value=self._estimate(taken.value, choice))
             reason, why = problem or (Reason.NOT_SEEN, "")
-            if reason is Reason.NOT_SEEN:
+            cut_off = isinstance(choice, Rejection) and rung < FULL_FRAMES  # a window may cut markers off
+            if reason is Reason.NOT_SEEN or (reason is Reason.IMPLAUSIBLE and cut_off):
                 rung += 1
             elif retaken:
                 value = self._estimate(taken.value, choice) if isinstance(choice, Choice) else None

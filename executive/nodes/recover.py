@@ -14,8 +14,8 @@ from executive.types import Outcome, Reason
 Choose = Callable[[Outcome[object], frozenset[str]], str | None]
 """Asks the pool: the failure and the strategies at hand here; the one to try, or None to call home."""
 
-Conclude = Callable[[bool], None]
-"""Tells the pool whether the strategy chosen last helped."""
+Conclude = Callable[[bool, bool], None]
+"""Tells the pool whether the strategy chosen last helped, and whether that was verified by the child."""
 
 
 class Recover(Composite):
@@ -84,7 +84,7 @@ class Recover(Composite):
         """Tell the pool what came of the strategy that ran before the child."""
         if self.unverified is not None:
             same = failure is not None and self.failure is not None and failure.reason is self.failure.reason
-            self.conclude(not same)
+            self.conclude(not same, True)
             self.unverified = None
 
     def answer(self, failure: Outcome[object]) -> Status:
@@ -125,7 +125,7 @@ class Recover(Composite):
         if status is Status.RUNNING:
             return Status.RUNNING
         if status is Status.FAILURE:
-            self.conclude(False)
+            self.conclude(False, False)
             return self.answer(self.failure)
         self.unverified = self.strategy
         self.trace.last_failure = None

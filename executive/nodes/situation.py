@@ -7,6 +7,12 @@ from executive.pool import Situation
 from executive.types import Outcome, Segment
 
 
+def conclude(services: Services, segment: Segment | None, helped: bool) -> None:
+    """Tell the pool what came of the strategy chosen last, and how far along the rover is by now."""
+    track = services.classification.predicted().on(segment).track
+    services.pool.conclude(helped, track.along_m if track else None)
+
+
 def choose(
     services: Services, segment: Segment | None, failure: Outcome[object], at_hand: frozenset[str]
 ) -> str | None:

@@ -270,7 +270,9 @@ class _Builder:
         def choose(failure: Outcome[object], at_hand: frozenset[str]) -> str | None:
             return situation.choose(services, segment.read(), failure, at_hand)
 
-        conclude = services.pool.conclude
+        def conclude(helped: bool, verified: bool) -> None:
+            situation.conclude(services, segment.read() if verified else None, helped)
+
         return Recover(spec.name, path, self.trace, choose, conclude, attempts, child, made)
 
     @staticmethod

@@ -105,3 +105,11 @@ def test_unmet_needs_are_given_as_the_reason() -> None:
 
 def test_an_unlikely_hypothesis_is_no_reason_to_act() -> None:
     assert pool(TURN)[0].choose(situation(Hypothesis.POOR_VIEW, 0.99)).strategy is None
+
+
+def test_what_fails_again_only_further_on_was_helped() -> None:
+    chosen, _ = pool(TURN)
+    chosen.choose(situation(Hypothesis.SLIP_TURNING, x_m=0.5))
+    chosen.conclude(helped=False, along_m=0.6)
+    assert chosen.attempts[-1].helped
+    assert chosen.choose(situation(Hypothesis.SLIP_TURNING, x_m=0.6)).strategy == "turn"

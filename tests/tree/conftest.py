@@ -100,7 +100,7 @@ class ScriptedPool:
         self.at_hand.append(at_hand)
         return SimpleNamespace(strategy=self.names.pop(0) if self.names else None)
 
-    def conclude(self, helped: bool) -> None:
+    def conclude(self, helped: bool, along_m: float | None = None) -> None:
         self.helped.append(helped)
 
 
