@@ -32,7 +32,7 @@ def backend_at(range_m: float, tier: str) -> SimBackend:
     )
     request = BackendRequest(world, route, 11, tier, RigCalibration(), None, 1.0)
     spec = load(BACKENDS, "pybullet")
-    return spec.create(request)  # type: ignore[attr-defined, no-any-return]
+    return spec.create(request)  # type: ignore[attr-defined, no-any-return]  # found by name
 
 
 def wait(backend: SimBackend, action) -> Outcome:

@@ -56,7 +56,7 @@ def fault_entries(source: Source, at: Place, setting: Setting) -> tuple[Resolved
     for index, entry in enumerate(entries):
         place = (*at, index)
         if isinstance(entry, dict):
-            fault = problems.attempt(lambda place=place, entry=entry: _fault(source, place, entry, setting))  # type: ignore[misc]
+            fault = problems.attempt(lambda place=place, entry=entry: _fault(source, place, entry, setting))  # type: ignore[misc]  # mypy cannot infer bound lambdas
             if fault is not None:
                 if fault.name in {other.name for other in found}:
                     message = f'got a second fault named "{fault.name}", expected a name of its own'

@@ -231,7 +231,7 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
             problems.add(source.key_at((*place, name)).problem(message + guess(name, ports)))
         else:
             kind = ports[name].type
-            values[name] = problems.attempt(lambda n=name, k=kind: literal(source, (*place, n), k))  # type: ignore[misc]
+            values[name] = problems.attempt(lambda n=name, k=kind: literal(source, (*place, n), k))  # type: ignore[misc]  # mypy cannot infer bound lambdas
     problems.check()
     return values
 

@@ -38,7 +38,7 @@ SEGMENT = ValueType("Segment", Segment, literal=False)
 ROUTE: ValueType[tuple[Segment, ...]] = ValueType("Route", tuple, literal=False)
 
 VALUE_TYPES: dict[str, ValueType[object]] = {
-    t.name: t  # type: ignore[misc]
+    t.name: t  # type: ignore[misc]  # one dict for every type
     for t in (
         LENGTH,
         ANGLE,

@@ -150,7 +150,7 @@ class World:
         self._grip = self._gripping((left, right))
         soil = self.soils.at(float(position[0]), float(position[1]))
         efficiency = self.soils.yaw_efficiency(soil, float(position[0]), float(position[1]))
-        self._slips = tuple(  # type: ignore[assignment]
+        self._slips = tuple(  # type: ignore[assignment]  # two tracks make a pair
             1.0 - g.travel(b, load) / b if b != 0.0 else 0.0
             for g, b in zip((left, right), belts_m, strict=True)
         )

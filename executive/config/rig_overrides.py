@@ -39,7 +39,7 @@ def rig_fields(rig: object) -> dict[str, Any]:
     """Every number of the rig as a file says it."""
     return {
         _key(field.name): _written(getattr(rig, field.name), field.name)
-        for field in dataclasses.fields(rig)  # type: ignore[arg-type]
+        for field in dataclasses.fields(rig)  # type: ignore[arg-type]  # always a dataclass
     }
 
 
@@ -63,7 +63,7 @@ def _field_type(hint: Any, name: str) -> Any:
     if dataclasses.is_dataclass(hint) and isinstance(hint, type):
         return model_of(hint)
     if get_origin(hint) is tuple:
-        return tuple[tuple(_field_type(a, name) if a is not ... else a for a in get_args(hint))]  # type: ignore[misc]
+        return tuple[tuple(_field_type(a, name) if a is not ... else a for a in get_args(hint))]  # type: ignore[misc]  # a type made at run time
     if hint is float:
         suffix = next((s for s in SUFFIXES if name.endswith(s)), "")
         return Annotated[float, *units.of_kind(SUFFIXES[suffix])] if suffix else float

@@ -162,12 +162,12 @@ class _Loader(Reader, Scanner, Parser, Composer, BaseResolver):
 
     def resolve(self, kind: type[yaml.Node], value: Any, implicit: Any) -> Any:
         """No tag for a scalar that carries none: what a plain one means is decided by the core schema."""
-        return None if kind is yaml.ScalarNode else super().resolve(kind, value, implicit)  # type: ignore[no-untyped-call]
+        return None if kind is yaml.ScalarNode else super().resolve(kind, value, implicit)  # type: ignore[no-untyped-call]  # untyped in the stubs
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]  # untyped in the stubs
             raise yaml.MarkedYAMLError(problem=f"nested deeper than {MAX_DEPTH} levels", problem_mark=mark)
         try:
             return super().compose_node(parent, index)

@@ -25,7 +25,7 @@ class DrivingLeaf(ActionLeaf):
     """Drives the belts; stops on tilt and before the off-track margin; leaves the predicted pose behind."""
 
     pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
-    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
     tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
     sigmas = In[float](NUMBER, "standard deviations to keep from the off-track margin", default=2.0)
 

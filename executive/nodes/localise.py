@@ -14,7 +14,7 @@ class Localise(ActionLeaf):
 
     quality = In[Quality](QUALITY, "trend, precise or far", default=Quality.PRECISE)
     pose = InOut[PoseEstimate](POSE, "the pose, as measured")
-    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
     budget = In[float](DURATION, "mission time it may take", default=900.0)
     settle = In[float](DURATION, "time at rest before the first exposure", default=5.0)
 

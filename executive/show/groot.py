@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from executive.nodes.base import REQUIRED, FromTree, PortSpec
 from executive.tree.catalogue import NodeType, node_types
@@ -91,9 +91,9 @@ def _port_text(node: NodeSpec, port: str) -> str:
     return str(value)
 
 
-def _own_kinds(trees: object) -> Iterator[NodeType]:
+def _own_kinds(trees: Iterable[TreeSpec]) -> Iterator[NodeType]:
     used: set[str] = set()
-    for tree in trees:  # type: ignore[attr-defined]
+    for tree in trees:
         stack = [tree.root]
         while stack:
             node = stack.pop()

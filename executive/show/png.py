@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
@@ -39,7 +40,7 @@ def png(root: Box) -> bytes:
 
 
 class _Painter:
-    def __init__(self, axes: object, scale: float) -> None:
+    def __init__(self, axes: Axes, scale: float) -> None:
         self.axes, self.points = axes, scale * 1.0
 
     def rounded(
@@ -61,7 +62,7 @@ class _Painter:
             linewidth=1.2 * self.points,
             linestyle=(0, (4, 3)) if dashed else "solid",
         )
-        self.axes.add_patch(patch)  # type: ignore[attr-defined]
+        self.axes.add_patch(patch)
 
     def frame(self, box: Box) -> None:
         if box.frame is None:
@@ -81,7 +82,7 @@ class _Painter:
                 start, rail = box.x + box.width, box.x + box.width + 16
                 xs, ys = [start, rail, rail, child.x], [box.y + HEAD_PX / 2, box.y + HEAD_PX / 2, end, end]
             style = (0, (4, 3)) if child.alternative else "solid"
-            self.axes.plot(xs, ys, color=EDGE, linewidth=1.2 * self.points, linestyle=style)  # type: ignore[attr-defined]
+            self.axes.plot(xs, ys, color=EDGE, linewidth=1.2 * self.points, linestyle=style)
 
     def box(self, box: Box, coloured: bool) -> None:
         colours = paint(box.category, box.outcome, coloured)
@@ -99,6 +100,4 @@ class _Painter:
             y += ROW_PX
 
     def text(self, x: float, y: float, size: float, colour: str, text: str, **style: str) -> None:
-        self.axes.text(  # type: ignore[attr-defined]
-            x, y, text, fontsize=size * 0.9 * self.points, color=colour, parse_math=False, **style
-        )
+        self.axes.text(x, y, text, fontsize=size * 0.9 * self.points, color=colour, parse_math=False, **style)

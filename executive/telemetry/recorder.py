@@ -46,14 +46,14 @@ class _McapSink:
     def flush(self) -> None:
         """Hand everything written so far to the operating system; call it once a tick."""
         if self._open:
-            self._writer.flush()  # type: ignore[no-untyped-call]
+            self._writer.flush()  # type: ignore[no-untyped-call]  # mcap has no types
 
     def close(self) -> None:
         """Write the summary and close; without effect the second time."""
         if self._open:
             self._open = False
             try:
-                self._writer.finish()  # type: ignore[no-untyped-call]
+                self._writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types
             finally:
                 self._file.close()
 

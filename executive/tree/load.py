@@ -206,7 +206,7 @@ class _TreeReader:
         values: dict[str, PortValue] = {}
         for name, port in known.items():
             if name in given:
-                value = local.attempt(lambda n=name, p=port: self._port((*place, n), kind, p))  # type: ignore[misc]
+                value = local.attempt(lambda n=name, p=port: self._port((*place, n), kind, p))  # type: ignore[misc]  # mypy cannot infer bound lambdas
                 if value is not None:
                     values[name] = value
             elif port.default is REQUIRED and (
