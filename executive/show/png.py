@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -99,5 +100,5 @@ class _Painter:
             self.text(box.x + PAD_PX, y, LINE_PX, GUARD, line, style="italic")
             y += ROW_PX
 
-    def text(self, x: float, y: float, size: float, colour: str, text: str, **style: str) -> None:
+    def text(self, x: float, y: float, size: float, colour: str, text: str, **style: Any) -> None:
         self.axes.text(x, y, text, fontsize=size * 0.9 * self.points, color=colour, parse_math=False, **style)
