@@ -13,15 +13,16 @@ from sim_pybullet.bullet import pybullet
 from sim_pybullet.rover import BELLY_FRICTION, BODY_LINK, CABIN_LINK, SHOES
 from sim_pybullet.shape import belt
 from sim_pybullet.soil import SOILS, thrust_ratio
+from sim_pybullet.tether import DRAG_N
+from sim_pybullet.world import World
 from tests.sim.conftest import WorldMaker
 from tests.sim.worlds import EVEN_SOIL, drive, heading, plain, travel
 
 pytestmark = pytest.mark.sim
 
 
-def encoder_slip(world_of: WorldMaker, slope_deg: float, soil: str) -> float:
-    """Slip uphill from the true path and what the encoders counted."""
-    world = world_of(plain(slope=f"{slope_deg} deg", soil={"like": soil, **EVEN_SOIL}))
+def encoder_slip(world: World) -> float:
+    """Slip from the true path and what the encoders counted."""
     world.tracks.gains = (1.0, 1.0)
     drive(world, 0.1, 0.1)  # into steady motion
     start, counted = world.body.pose()[0], world.tracks.read().left_m
@@ -29,21 +30,33 @@ def encoder_slip(world_of: WorldMaker, slope_deg: float, soil: str) -> float:
     return 1.0 - travel(start, world.body.pose()[0]) / (world.tracks.read().left_m - counted)
 
 
-@pytest.mark.parametrize("soil", ["loose_sand", "gravel"])
-@pytest.mark.parametrize("slope_deg", [10, 15, 20, 25])
-def test_slip_over_slope_follows_the_analytic_law(world_of: WorldMaker, slope_deg: float, soil: str) -> None:
-    """F / (mu N) = tan(slope) / mu, put into the law with the slip that was measured."""
-    slip = encoder_slip(world_of, slope_deg, soil)
-    kind = SOILS[soil]
-    length_m = belt(world_of(plain()).rig.rover).length_m
-    wanted = math.tan(math.radians(slope_deg)) / kind.friction
+def slip_by_law(world: World, slope_rad: float, soil: str) -> float:
+    """The law solved on a grid for what a rover that looks uphill carries: its weight and its tether."""
+    uphill = np.array([math.cos(slope_rad), 0.0, math.sin(slope_rad)])
+    normal = np.array([-math.sin(slope_rad), 0.0, math.cos(slope_rad)])
+    to_spool = -world.body.pose()[0] / np.linalg.norm(world.body.pose()[0])
+    load_n = DRAG_N * to_spool - np.array([0.0, 0.0, world.weight_n])
+    wanted = -float(load_n @ uphill) / (-SOILS[soil].friction * float(load_n @ normal))
     grid = np.linspace(1e-4, 1.0, 20_000)
-    analytic = grid[np.argmin([abs(thrust_ratio(s, length_m, kind.shear_m) - wanted) for s in grid])]
-    assert slip == pytest.approx(analytic, rel=0.10)
+    length_m = belt(world.rig.rover).length_m
+    misfit = [abs(thrust_ratio(s, length_m, SOILS[soil].shear_m) - wanted) for s in grid]
+    return float(grid[np.argmin(misfit)])
+
+
+@pytest.mark.parametrize("soil", ["loose_sand", "gravel"])
+@pytest.mark.parametrize(("slope_deg", "within"), [(5, 0.02), (10, 0.02), (20, 0.02), (25, 0.1), (30, 0.1)])
+def test_slip_over_slope_follows_the_analytic_law(
+    world_of: WorldMaker, slope_deg: float, within: float, soil: str
+) -> None:
+    """Above 20 degrees the soles also slide a little where they cross the edges of the ground's triangles."""
+    world = world_of(plain(slope=f"{slope_deg} deg", soil={"like": soil, **EVEN_SOIL}))
+    slip = encoder_slip(world)
+    assert slip == pytest.approx(slip_by_law(world, math.radians(slope_deg), soil), rel=within)
 
 
 def test_slip_on_level_ground_is_below_one_per_mille(world_of: WorldMaker) -> None:
-    assert abs(encoder_slip(world_of, 0, "gravel")) < 1e-3
+    world = world_of(plain(soil={"like": "gravel", **EVEN_SOIL}))
+    assert abs(encoder_slip(world)) < 1e-3
 
 
 def test_rover_cannot_climb_beyond_its_friction(world_of: WorldMaker) -> None:
