@@ -12,6 +12,7 @@ from executive.clock import Stopwatch
 from executive.command_log import logged
 from executive.errors import PluginError
 from executive.fault_schedule import FaultSchedule
+from executive.faults import TreeParts
 from executive.journal import RunJournal
 from executive.nodes.services import Services
 from executive.pool import Pool, Strategy
@@ -77,20 +78,22 @@ def _prepare(
 ) -> Run:
     route = scenario.mission.route()
     journal = RunJournal(recorder, backend.clock, route)
-    faults = FaultSchedule(scenario.faults, backend)
+    faults = FaultSchedule(scenario.faults, backend, scenario.seed)
     journal.hear = faults.sightings.hear
+    strategies = faults.wrap_pool(strategies)
     devices = logged(faults.wrap(backend.devices), journal.write)
     services = Services(
         clock=backend.clock,
         devices=devices,
         rig=backend.rig,
-        localizer=_localizer(make_localizer, devices, backend),
+        localizer=faults.wrap_localizer(_localizer(make_localizer, devices, backend)),
         classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
         pool=Pool(strategies, journal.strategy),
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
     built = build(scenario.tree, services, inputs, strategy_trees(strategies))
+    faults.wrap_tree(TreeParts(built.paths, built.store.values))
     return Run(
         root=built.root,
         trace=built.trace,

@@ -1,31 +1,49 @@
-"""The `faults:` list of a scenario: a kind with its parameters, when it starts, how long it lasts."""
+"""The `faults:` list of a scenario: kind and parameters, when it starts, how long it lasts, its profile.
+
+Faults with one `cause` come and go together; a `group` writes that once for several:
+
+    - group: dust_storm
+      from: {time: 20 min}
+      for: 10 min
+      faults: [{led_dim: {marker: 0}}, {image_blur: {sigma: 1.5}}]
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BaseModel
 
+from executive import fault_profiles as profiles
 from executive import plugins
 from executive.config.source import Place, Source
 from executive.config.validate import Problems, guess, listed, parse, shown
 from executive.errors import ConfigError
-from executive.faults import ONSETS, FaultSpec, Trigger
+from executive.expressions import GuardError
+from executive.fault_profiles import Profile
+from executive.fault_triggers import Trigger
+from executive.faults import FaultSpec
+from executive.guards import parse_guard
+from executive.signals import LIVE_TYPES
 from executive.units import DURATION, UnitError, quantity, written
 
-RESERVED = ("from", "for", "name")
+RESERVED = ("from", "for", "name", "profile", "cause")
+SHARED = ("from", "for", "profile")
 
 
 @dataclass(frozen=True)
 class ResolvedFault:
-    """A fault to be injected; `duration_s` None: until the end of the run."""
+    """A fault to be injected; `duration_s` None: until the end of the run; `profile` None: a step."""
 
     name: str
     spec: FaultSpec
     parameters: BaseModel
     start: Trigger
     duration_s: float | None
+    profile: Profile | None = None
+    cause: str | None = None
 
     def entry(self) -> dict[str, Any]:
         """As the file says it, every default written."""
@@ -34,7 +52,11 @@ class ResolvedFault:
             "name": self.name,
             "from": self.start.model_dump(mode="json", exclude_none=True),
         }
-        return entry if self.duration_s is None else entry | {"for": written(self.duration_s, "s")}
+        if self.duration_s is not None:
+            entry["for"] = written(self.duration_s, "s")
+        if self.profile is not None:
+            entry["profile"] = profiles.entry(self.profile)
+        return entry if self.cause is None else entry | {"cause": self.cause}
 
 
 @dataclass(frozen=True)
@@ -48,22 +70,50 @@ class Setting:
 
 def fault_entries(source: Source, at: Place, setting: Setting) -> tuple[ResolvedFault, ...]:
     """Every fault of the list at `at` (none if there is no such list); ConfigError with every complaint."""
-    entries = source.data.get("faults") if isinstance(source.data, dict) else None
-    if not isinstance(entries, list):
-        return ()
     problems = Problems()
     found: list[ResolvedFault] = []
-    for index, entry in enumerate(entries):
-        place = (*at, index)
-        if isinstance(entry, dict):
-            fault = problems.attempt(lambda place=place, entry=entry: _fault(source, place, entry, setting))  # type: ignore[misc]  # mypy cannot infer bound lambdas
-            if fault is not None:
-                if fault.name in {other.name for other in found}:
-                    message = f'got a second fault named "{fault.name}", expected a name of its own'
-                    problems.add(source.at(place).problem(message))
-                found.append(fault)
+    for place, entry in _entries(source, at, problems):
+        fault = problems.attempt(lambda place=place, entry=entry: _fault(source, place, entry, setting))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+        if fault is not None:
+            if fault.name in {other.name for other in found}:
+                message = f'got a second fault named "{fault.name}", expected a name of its own'
+                problems.add(source.at(place).problem(message))
+            found.append(fault)
     problems.check()
     return tuple(found)
+
+
+def ungrouped(source: Source, at: Place) -> Source:
+    """The source with every group of the list at `at` written out: its faults in its place, of one cause."""
+    entries = source.get(at) if at in source.values else None
+    if not isinstance(entries, list) or not any(isinstance(e, dict) and "group" in e for e in entries):
+        return source
+    flat: list[tuple[Place, dict[str, Place]]] = []
+    for index, entry in enumerate(entries):
+        place = (*at, index)
+        if isinstance(entry, dict) and isinstance(entry.get("faults"), list) and "group" in entry:
+            shared = {key: (*place, key) for key in SHARED if key in entry}
+            members = range(len(entry["faults"]))
+            flat += [((*place, "faults", m), shared | {"cause": (*place, "group")}) for m in members]
+        else:
+            flat.append((place, {}))
+    grown = source.graft(at, Source([None] * len(flat), {(): source.at(at)}))
+    for number, (member, shared) in enumerate(flat):
+        grown = grown.graft((*at, number), source.part(member))
+        for key, place in shared.items():
+            if isinstance(grown.get((*at, number)), dict):
+                grown = grown.graft((*at, number, key), source.part(place))
+    return grown
+
+
+def _entries(source: Source, at: Place, problems: Problems) -> Iterator[tuple[Place, dict[str, Any]]]:
+    entries = source.get(at) if at in source.values else None
+    for index, entry in enumerate(entries if isinstance(entries, list) else ()):
+        if isinstance(entry, dict) and "group" in entry:
+            message = "got a group without a list of faults, expected {group: NAME, faults: [...]}"
+            problems.add(source.at((*at, index)).problem(message))
+        elif isinstance(entry, dict):
+            yield (*at, index), entry
 
 
 def _fault(source: Source, place: Place, entry: dict[str, Any], setting: Setting) -> ResolvedFault:
@@ -78,12 +128,14 @@ def _fault(source: Source, place: Place, entry: dict[str, Any], setting: Setting
     parameters = problems.attempt(lambda: _parameters(source, (*place, kind), spec)) if spec else None
     start = problems.attempt(lambda: _start(source, place, entry, setting))
     duration_s = problems.attempt(lambda: _duration_s(source, place, entry, spec))
-    name = problems.attempt(lambda: _name(source, place, entry, kind))
+    profile = problems.attempt(lambda: _profile(source, place, entry, spec))
+    name = problems.attempt(lambda: _name(source, place, "name", entry, kind))
+    cause = problems.attempt(lambda: _name(source, place, "cause", entry, None))
     problems.check()
     assert spec is not None  # noqa: S101
     assert parameters is not None  # noqa: S101  (else a problem was found)
     assert start is not None  # noqa: S101
-    return ResolvedFault(name or kind, spec, parameters, start, duration_s)
+    return ResolvedFault(name or kind, spec, parameters, start, duration_s, profile, cause)
 
 
 def _spec(source: Source, place: Place, kind: str, setting: Setting) -> FaultSpec:
@@ -113,9 +165,11 @@ def _start(source: Source, place: Place, entry: dict[str, Any], setting: Setting
         return Trigger(time="0 s")  # type: ignore[arg-type]  # read as from a file
     start = parse(source, Trigger, (*place, "from"))
     if start.when is not None:
-        known = listed([onset for onset in ONSETS if onset != "when"])
-        message = f"`when` is not judged yet; expected one of {known}"
-        raise ConfigError([source.key_at((*place, "from", "when")).problem(message)])
+        try:
+            parse_guard(start.when, LIVE_TYPES).check(LIVE_TYPES)
+        except GuardError as error:
+            mark = source.at((*place, "from", "when"))
+            raise ConfigError([mark.problem(error.message, error.offset)]) from None
     if start.waypoint is not None and start.waypoint >= setting.waypoints:
         message = f"got way-point {start.waypoint}, expected 0 to {setting.waypoints - 1}"
         raise ConfigError([source.at((*place, "from", "waypoint")).problem(message)])
@@ -139,8 +193,25 @@ def _duration_s(source: Source, place: Place, entry: dict[str, Any], spec: Fault
         raise ConfigError([source.at((*place, "for")).problem(str(error))]) from None
 
 
-def _name(source: Source, place: Place, entry: dict[str, Any], kind: str) -> str:
-    name = entry.get("name", kind)
-    if isinstance(name, str) and name:
+def _profile(source: Source, place: Place, entry: dict[str, Any], spec: FaultSpec | None) -> Profile | None:
+    if entry.get("profile", profiles.STEP) == profiles.STEP:
+        return None
+    at = (*place, "profile")
+    if isinstance(entry["profile"], str):
+        message = f"got {shown(entry['profile'])}, expected step, or a mapping: ramp, intermittent or random"
+        raise ConfigError([source.at(at).problem(message)])
+    profile = parse(source, Profile, at)
+    if spec is not None and profile.ramp is not None and not spec.graded:
+        message = f"got a ramp of {spec.name}, which is there or not; expected step, intermittent or random"
+        raise ConfigError([source.key_at((*at, "ramp")).problem(message)])
+    if spec is not None and profile.ramp is None and spec.lasting:
+        message = f"got {spec.name} on and off, which cannot be taken back; expected step"
+        raise ConfigError([source.key_at(at).problem(message)])
+    return profile
+
+
+def _name(source: Source, place: Place, key: str, entry: dict[str, Any], default: str | None) -> str | None:
+    name = entry.get(key, default)
+    if name is None or (isinstance(name, str) and name):
         return name
-    raise ConfigError([source.at((*place, "name")).problem(f"got {shown(name)}, expected a name")])
+    raise ConfigError([source.at((*place, key)).problem(f"got {shown(name)}, expected a name")])

@@ -2,90 +2,99 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from executive.chance import generator
 from executive.fault_entries import ResolvedFault
-from executive.faults import Fault, Trigger
+from executive.fault_onsets import Onset, Sightings
+from executive.fault_profiles import Shape
+from executive.faults import Cue, Fault, TreeParts
 from executive.journal import RunJournal
-from executive.ports import Backend, Devices
+from executive.pool import Strategy
+from executive.ports import Backend, Devices, Localizer
 from executive.telemetry import events
 from executive.types import Segment
 
 
-class Sightings:
-    """What has happened so far, as far as triggers ask for it; fed with every event of the record.
+@dataclass
+class Level:
+    """How strong a fault is just now, 0 to 1; set by the schedule, asked by what is wrapped."""
 
-    A node counts as entered each time it is seen running anew, or ends at once. Nodes are called by the
-    last part of their path; `#2` and the like behind it count together.
-    """
+    now: float = 0.0
 
-    def __init__(self) -> None:
-        self.entered: Counter[str] = Counter()
-        self.strategies: set[str] = set()
-        self.waypoints: set[int] = set()
-        self._running: set[str] = set()
-
-    def hear(self, event: object) -> None:
-        if isinstance(event, events.NodeChange):
-            self._node(event)
-        elif isinstance(event, events.StrategyEvent):
-            self.strategies.add(event.name)
-        elif isinstance(event, events.WaypointEvent):
-            self.waypoints.add(event.index)
-
-    def _node(self, change: events.NodeChange) -> None:
-        runs = change.status == "running"
-        if change.path not in self._running and change.status != "invalid":
-            self.entered[change.path.rsplit("/", 1)[-1].split("#")[0]] += 1
-        (self._running.add if runs else self._running.discard)(change.path)
+    def __call__(self) -> float:
+        return self.now
 
 
 @dataclass
 class Injection:
-    """One fault of the scenario under way: not yet, active since, or over."""
+    """One fault of the scenario under way: waiting, armed since its onset, fired on its effect, over."""
 
     plan: ResolvedFault
     fault: Fault
+    cue: Cue
+    onset: Onset
+    shape: Shape
+    level: Level
     since_s: float | None = None
     fired: bool = False
     over: bool = False
 
-    def active(self) -> bool:
-        return self.since_s is not None and not self.over
-
 
 class FaultSchedule:
-    """Makes the scenario's faults, wraps the devices with them, and starts and ends each in its time.
+    """Makes the scenario's faults, wraps what they act through, and starts and ends each in its time.
 
-    FaultEvents are written when a fault has taken effect, not when it was asked to; one that never did is
+    A FaultEvent is written when a fault has taken effect, not when it was asked to; one that never did is
     evidence that the run tested nothing.
     """
 
-    def __init__(self, plans: Sequence[ResolvedFault], backend: Backend) -> None:
+    def __init__(self, plans: Sequence[ResolvedFault], backend: Backend, seed: int) -> None:
         self._backend = backend
-        self._injections = [Injection(plan, plan.spec.make(plan.parameters)) for plan in plans]
+        self._injections = [self._injection(plan, seed) for plan in plans]
         self.sightings = Sightings()
+
+    def _injection(self, plan: ResolvedFault, seed: int) -> Injection:
+        level = Level()
+        cue = Cue(level, self._backend.clock, generator(seed, f"fault {plan.name}"))
+        shape = Shape(plan.profile, generator(seed, f"profile {plan.cause or plan.name}"))
+        return Injection(plan, plan.spec.make(plan.parameters), cue, Onset(plan.start), shape, level)
 
     def wrap(self, devices: Devices) -> Devices:
         """The devices behind every fault of the ports; the first fault of the scenario lies innermost."""
         for injection in self._injections:
-            devices = injection.fault.wrap(devices, injection.active)
+            devices = injection.fault.wrap(devices, injection.cue)
         return devices
 
+    def wrap_localizer(self, localizer: Localizer) -> Localizer:
+        """The localizer behind every fault of estimation."""
+        for injection in self._injections:
+            localizer = injection.fault.wrap_localizer(localizer, injection.cue)
+        return localizer
+
+    def wrap_pool(self, strategies: tuple[Strategy, ...]) -> tuple[Strategy, ...]:
+        """The strategies that are found with these faults."""
+        for injection in self._injections:
+            strategies = injection.fault.wrap_pool(strategies)
+        return strategies
+
+    def wrap_tree(self, tree: TreeParts) -> None:
+        """Put the executive's own faults into the built tree."""
+        for injection in self._injections:
+            injection.fault.wrap_tree(tree, injection.cue)
+
     def tick(self, journal: RunJournal, route: Sequence[Segment]) -> None:
-        """Begin what is due, note what took effect, end what has lasted long enough."""
+        """Begin what is due, let levels follow their profiles, note what took effect, end what has lasted."""
         if not self._injections:
             return
         now_s = self._backend.clock.now_s
         progress = journal.along_route_m() / sum(segment.length_m for segment in route)
         for injection in self._injections:
-            if injection.since_s is None and _due(injection.plan.start, self.sightings, now_s, progress):
+            if injection.since_s is None and injection.onset.due(self.sightings, now_s, progress):
                 injection.since_s = now_s
-                injection.fault.apply(self._backend, True)
-            if injection.active():
-                self._go_on(injection, journal, now_s)
+                journal.write(events.FaultArmedEvent(injection.plan.name, injection.plan.cause or ""))
+            if injection.since_s is not None and not injection.over:
+                self._go_on(injection, journal, now_s - injection.since_s)
 
     def never_fired(self) -> tuple[str, ...]:
         """The faults that have not taken effect."""
@@ -100,30 +109,23 @@ class FaultSchedule:
             journal.write(events.FaultEvent(name, False))
         return f"{', '.join(missing)} never took effect" if missing else None
 
-    def _go_on(self, injection: Injection, journal: RunJournal, now_s: float) -> None:
-        self._note_effect(injection, journal)
-        lasts_s, since_s = injection.plan.duration_s, injection.since_s
-        if lasts_s is None or since_s is None or now_s - since_s < lasts_s:
-            return
-        injection.over = True
-        injection.fault.apply(self._backend, False)
-        if injection.fired:
+    def _go_on(self, injection: Injection, journal: RunJournal, since_s: float) -> None:
+        lasts_s = injection.plan.duration_s
+        injection.over = lasts_s is not None and since_s >= lasts_s
+        if injection.over:
+            self._note_effect(injection, journal)
+        level = 0.0 if injection.over else injection.shape.level(since_s)
+        if level != injection.level.now:
+            injection.level.now = level
+            injection.fault.apply(self._backend, level)
+        if level > 0.0:
+            injection.fault.watch(self._backend)
+            self._note_effect(injection, journal)
+        if injection.over and injection.fired:
             journal.write(events.FaultEvent(injection.plan.name, False, injection.plan.spec.hypothesis))
 
     @staticmethod
     def _note_effect(injection: Injection, journal: RunJournal) -> None:
-        if injection.active() and not injection.fired and injection.fault.took_effect():
+        if injection.since_s is not None and not injection.fired and injection.fault.took_effect():
             injection.fired = True
             journal.write(events.FaultEvent(injection.plan.name, True, injection.plan.spec.hypothesis))
-
-
-def _due(start: Trigger, seen: Sightings, now_s: float, progress: float) -> bool:
-    if start.time is not None:
-        return now_s >= start.time
-    if start.progress is not None:
-        return progress >= start.progress
-    if start.waypoint is not None:
-        return start.waypoint in seen.waypoints
-    if start.node is not None:
-        return seen.entered[start.node] >= (start.count or 1)
-    return start.strategy in seen.strategies

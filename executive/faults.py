@@ -1,34 +1,81 @@
-"""What a fault plug-in registers under `longarm.faults`, and when a fault starts. No implementation here."""
+"""What a fault plug-in registers under `longarm.faults`: what a fault may alter, and its evidence.
+
+No implementation here, and nothing else in the core knows a fault by name.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, MutableMapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Self
+from typing import Any
 
-from pydantic import BaseModel, Field, model_validator
-from pydantic_core import PydanticCustomError
+import numpy as np
+from py_trees.behaviour import Behaviour
+from pydantic import BaseModel
 
-from executive.config.validate import Strict
-from executive.ports import Backend, Devices
-from executive.units import Duration, Fraction
+from executive.clock import Clock
+from executive.pool import Strategy
+from executive.ports import Backend, Devices, Localizer
+
+CATEGORIES = (
+    *("tracks", "terrain", "tether", "head", "cameras", "markers", "light"),
+    *("estimation", "link", "executive", "other"),
+)
+
+
+@dataclass(frozen=True)
+class Cue:
+    """What a fault may ask while the run goes on: how strong it is just now, the time, its own chance.
+
+    `level` is 0 while the fault is not there, 1 at full severity, between them along a ramp.
+    """
+
+    level: Callable[[], float]
+    clock: Clock
+    rng: np.random.Generator
+
+    @property
+    def active(self) -> bool:
+        return self.level() > 0.0
+
+
+@dataclass(frozen=True)
+class TreeParts:
+    """What a fault of the executive may reach: every node by its path (outermost behaviour), the values."""
+
+    nodes: Mapping[str, Behaviour]
+    values: MutableMapping[str, object]
 
 
 class Fault:
-    """One injected fault. Override `wrap` for a fault of the ports, `apply` for one of the world, or both."""
+    """One injected fault. Override what it acts through: ports, localizer, tree, pool or the world.
 
-    def wrap(self, devices: Devices, active: Callable[[], bool]) -> Devices:
-        """The devices as the executive shall see them; what is wrapped asks `active` whenever it is used."""
+    What is wrapped asks its cue each time it is used; it is wrapped once, before the run.
+    """
+
+    def wrap(self, devices: Devices, cue: Cue) -> Devices:
+        """The devices as the executive shall see them."""
         return devices
 
-    def apply(self, backend: Backend, active: bool) -> None:
-        """Change the world at the onset, and back at the end."""
+    def wrap_localizer(self, localizer: Localizer, cue: Cue) -> Localizer:
+        """The localizer as the executive shall see it."""
+        return localizer
+
+    def wrap_tree(self, tree: TreeParts, cue: Cue) -> None:
+        """Alter the behaviours of the built tree, in place."""
+
+    def wrap_pool(self, strategies: tuple[Strategy, ...]) -> tuple[Strategy, ...]:
+        """The strategies that the executive finds when it starts."""
+        return strategies
+
+    def apply(self, backend: Backend, level: float) -> None:
+        """Change the world; called whenever the level has changed, the last time with 0."""
+
+    def watch(self, backend: Backend) -> None:
+        """Look for evidence; called once a tick while active."""
 
     def took_effect(self) -> bool:
-        """Evidence: whether anything has gone otherwise because of it since its onset.
-
-        A fault of the world has by its onset alone; one of the ports once an answer was altered.
-        """
+        """Evidence: whether anything has gone otherwise because of it since its onset."""
         return True
 
 
@@ -37,7 +84,9 @@ class FaultSpec:
     """A kind of fault: its parameters' schema, how to make one, the diagnosis it should lead to.
 
     `make` is given an instance of `model`. `backends` and `tiers` say where it can act (empty: everywhere).
-    A `lasting` fault cannot be taken back, so that `for` is refused.
+    A `lasting` fault cannot be taken back, so that `for` is refused; a `graded` one knows levels between 0
+    and 1, so that it may come as a ramp. `node` and `strategy` name the parameters that must name a node of
+    the tree or a strategy of the pool.
     """
 
     name: str
@@ -48,30 +97,11 @@ class FaultSpec:
     backends: tuple[str, ...] = ()
     tiers: tuple[str, ...] = ()
     lasting: bool = False
+    category: str = "other"
+    graded: bool = False
+    node: str | None = None
+    strategy: str | None = None
 
-
-class Trigger(Strict):
-    """When a fault begins: exactly one of these, `count` going with `node`."""
-
-    time: Annotated[Duration, Field(ge=0)] | None = None
-    progress: Annotated[Fraction, Field(ge=0, le=1)] | None = None
-    waypoint: Annotated[int, Field(ge=0)] | None = None
-    node: Annotated[str, Field(min_length=1)] | None = None
-    count: Annotated[int, Field(ge=1)] | None = None
-    strategy: Annotated[str, Field(min_length=1)] | None = None
-    when: Annotated[str, Field(min_length=1)] | None = None
-
-    @model_validator(mode="after")
-    def one_of_them(self) -> Self:
-        named = [name for name in ONSETS if getattr(self, name) is not None]
-        if len(named) != 1:
-            got = " and ".join(named) if named else "none"
-            text = f"got {got}, expected exactly one of {', '.join(ONSETS)}"
-            raise PydanticCustomError("located", "{text}", {"text": text})
-        if self.count is not None and self.node is None:
-            text = "got count without node, expected {node: NAME, count: N}"
-            raise PydanticCustomError("located", "{text}", {"text": text})
-        return self
-
-
-ONSETS = ("time", "progress", "waypoint", "node", "strategy", "when")
+    def __post_init__(self) -> None:
+        if self.category not in CATEGORIES:
+            raise ValueError(f"{self.name}: got the category {self.category!r}, expected one of {CATEGORIES}")

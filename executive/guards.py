@@ -8,12 +8,13 @@ true/false, and references in braces. Dimensions are checked when the tree is lo
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from executive import expressions as make
 from executive import units
+from executive.config.validate import guess
 from executive.expressions import FUNCTIONS, Expression, GuardError, Read, Token, UnknownValueError, kind_text
 from executive.units import UnitError
 from executive.values import ValueType
@@ -42,9 +43,9 @@ class Guard:
             raise GuardError(self.body.offset, f"got {kind_text(kind)}, expected something true or false")
 
 
-def parse_guard(text: str) -> Guard:
-    """GuardError when the text is not such an expression."""
-    parser = _Parser(list(_tokens(text)), len(text))
+def parse_guard(text: str, names: Iterable[str] = ()) -> Guard:
+    """GuardError when the text is not such an expression. `names` may stand without braces."""
+    parser = _Parser(list(_tokens(text)), len(text), frozenset(names))
     body = parser.disjunction()
     parser.expect_end()
     return Guard(text, body)
@@ -75,8 +76,9 @@ def _tokens(text: str) -> Iterator[Token]:
 class _Parser:
     """Recursive descent, one token ahead."""
 
-    def __init__(self, tokens: list[Token], length: int) -> None:
+    def __init__(self, tokens: list[Token], length: int, names: frozenset[str] = frozenset()) -> None:
         self.tokens, self.position, self.depth = tokens, 0, 0
+        self.names = names
         self.end = Token("end", "the end", length)
 
     @property
@@ -159,12 +161,18 @@ class _Parser:
                 return make.constant(token.offset, token.text == "true", "flag")
             case "word" if token.text in FUNCTIONS:
                 return self.call(token)
+            case "word" if token.text in self.names:
+                return make.reference(token)
             case "operator" if token.text == "(":
                 inner = self.disjunction()
                 self.must(")")
                 return inner
-        hint = f"; did you mean {{{token.text}}}?" if token.kind == "word" else ""
-        raise GuardError(token.offset, f"got {token.text!r}, expected a number, a {{value}} or (...){hint}")
+        word = token.kind == "word"
+        if self.names:
+            hint, value = guess(token.text, self.names) if word else "", "signal"
+        else:
+            hint, value = f"; did you mean {{{token.text}}}?" if word else "", "{value}"
+        raise GuardError(token.offset, f"got {token.text!r}, expected a number, a {value} or (...){hint}")
 
     def number(self, token: Token) -> Expression:
         unit, following = self.token, self.tokens[self.position + 1 : self.position + 2]

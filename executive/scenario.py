@@ -12,6 +12,7 @@ from pydantic import BaseModel
 
 from executive import plugins
 from executive.backends import BackendSpec
+from executive.chance import generator
 from executive.config.find import find, portable, shown
 from executive.config.mission import mission_problems
 from executive.config.models import Expect, MissionFile, ScenarioFile
@@ -20,8 +21,9 @@ from executive.config.rig_overrides import rig_fields, rig_from
 from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
+from executive.distributions import drawn
 from executive.errors import ConfigError, Problem
-from executive.fault_entries import ResolvedFault, Setting, fault_entries
+from executive.fault_entries import ResolvedFault, Setting, fault_entries, ungrouped
 from executive.pool_plugins import load_strategies, strategy_trees
 from executive.rig import RigCalibration
 from executive.tree.literals import literal
@@ -101,6 +103,10 @@ def resolve_scenario(
 def resolve(source: Source) -> ResolvedScenario:
     """The same from data already read."""
     problems = Problems()
+    source = ungrouped(source, ("faults",))
+    seed = source.data.get("seed", 0) if isinstance(source.data, dict) else 0
+    if isinstance(seed, int):  # what else it may be is told where the file is read
+        source = problems.attempt(lambda: _drawn(source, abs(seed))) or source
     file = problems.attempt(lambda: parse(source, ScenarioFile))
     backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
     backend = problems.attempt(lambda: _backend(source, backend_name))
@@ -114,6 +120,7 @@ def resolve(source: Source) -> ResolvedScenario:
     inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
     if tree is not None and faults:
         problems.found.extend(_unknown_nodes(source, faults, tree))
+        problems.found.extend(_unknown_targets(source, faults, tree))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
@@ -135,6 +142,13 @@ def resolve(source: Source) -> ResolvedScenario:
         backend,
         inputs or {},
     )
+
+
+def _drawn(source: Source, seed: int) -> Source:
+    """Every distribution in what a scenario may leave to chance, replaced by a value of this seed."""
+    for part in ("world", "rig", "faults"):
+        source = drawn(source, (part,), lambda place: generator(seed, f"draw {place}"))
+    return source
 
 
 def as_scenario(source: Source) -> Source:
@@ -238,18 +252,45 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
 
 def _unknown_nodes(source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec) -> list[Problem]:
     """Faults that wait for a node which neither the tree nor a strategy has: they could never fire."""
-    waited = [(i, f.start.node) for i, f in enumerate(faults) if f.start.node is not None]
-    if not waited:
-        return []
-    known = {node.name for _, node in walk(tree)}
-    for remedy in strategy_trees(load_strategies()).values():
-        known |= {node.name for _, node in walk(remedy)}
+    waited: list[tuple[Place, str]] = [
+        (("faults", i, "from", "node"), f.start.node)
+        for i, f in enumerate(faults)
+        if f.start.node is not None
+    ]
+    return _strangers(
+        source, waited, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
+    )
+
+
+def _unknown_targets(source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec) -> list[Problem]:
+    """Faults of a node or a strategy that is not there."""
+    nodes: list[tuple[Place, str]] = []
+    strategies: list[tuple[Place, str]] = []
+    for i, fault in enumerate(faults):
+        for parameter, found in ((fault.spec.node, nodes), (fault.spec.strategy, strategies)):
+            value = getattr(fault.parameters, parameter) if parameter else None
+            if parameter and value is not None:
+                found.append((("faults", i, fault.spec.name, parameter), value))
+    known = set(plugins.found(plugins.STRATEGIES))
     return [
-        source.at(("faults", i, "from", "node")).problem(
-            f'got the node "{node}", which the tree {tree.name} does not have{guess(node, sorted(known))}'
-        )
-        for i, node in waited
-        if node not in known
+        *_strangers(
+            source, nodes, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
+        ),
+        *_strangers(source, strategies, known, "the unknown strategy {}"),
+    ]
+
+
+def _node_names(tree: TreeSpec) -> set[str]:
+    """What the nodes of a tree and of every strategy's tree are called."""
+    trees = (tree, *strategy_trees(load_strategies()).values())
+    return {node.name for each in trees for _, node in walk(each)}
+
+
+def _strangers(source: Source, named: list[tuple[Place, str]], known: set[str], got: str) -> list[Problem]:
+    return [
+        source.at(place).problem("got " + got.format(f'"{name}"') + guess(name, sorted(known)))
+        for place, name in named
+        if name not in known
     ]
 
 

@@ -129,6 +129,16 @@ def parse(text: str) -> tuple[float, Dimension]:
     return value, found
 
 
+def split(text: str) -> tuple[float, str]:
+    """`"30 mm"` → (30.0, "mm"); UnitError where the text is not a number with or without a known unit."""
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
+        raise UnitError(f"got {text!r}, expected a number with its unit")
+    number, unit = match.groups()
+    factor(unit or "")
+    return float(Decimal(number)), unit or ""
+
+
 def quantity(given: object, kind: Kind) -> float:
     """The SI value of what a file says where a `kind` is meant; UnitError says what is wrong with it."""
     if isinstance(given, bool) or not isinstance(given, str | int | float):

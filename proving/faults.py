@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from executive.faults import Fault, FaultSpec
+from executive.faults import Cue, Fault, FaultSpec
 from executive.ports import Action, Cameras, Devices, Tracks
 from executive.types import Centres, Images, Outcome, Shot, TrackReading
 from executive.units import Fraction
@@ -36,8 +35,8 @@ class FrozenFrame(Fault):
     def __init__(self, parameters: Nothing) -> None:
         self.frozen = 0
 
-    def wrap(self, devices: Devices, active: Callable[[], bool]) -> Devices:
-        return replace(devices, cameras=_FrozenCameras(devices.cameras, active, self))
+    def wrap(self, devices: Devices, cue: Cue) -> Devices:
+        return replace(devices, cameras=_FrozenCameras(devices.cameras, cue, self))
 
     def took_effect(self) -> bool:
         return self.frozen > 0
@@ -46,12 +45,12 @@ class FrozenFrame(Fault):
 @dataclass
 class _FrozenCameras:
     inner: Cameras
-    active: Callable[[], bool]
+    cue: Cue
     fault: FrozenFrame
 
     def take(self, shot: Shot) -> Action[Images | Centres]:
         action = self.inner.take(shot)
-        return _Frozen(action, self.fault) if self.active() else action
+        return _Frozen(action, self.fault) if self.cue.active else action
 
 
 @dataclass
@@ -89,8 +88,8 @@ class EncoderScale(Fault):
         )
         self.miscounted_m = 0.0
 
-    def wrap(self, devices: Devices, active: Callable[[], bool]) -> Devices:
-        return replace(devices, tracks=_MiscountedTracks(devices.tracks, active, self))
+    def wrap(self, devices: Devices, cue: Cue) -> Devices:
+        return replace(devices, tracks=_MiscountedTracks(devices.tracks, cue, self))
 
     def took_effect(self) -> bool:
         return self.miscounted_m > 0.0
@@ -99,12 +98,12 @@ class EncoderScale(Fault):
 class _MiscountedTracks:
     """Counts on from what it said last, so that nothing jumps at onset or end."""
 
-    def __init__(self, inner: Tracks, active: Callable[[], bool], fault: EncoderScale) -> None:
-        self._inner, self._active, self._fault = inner, active, fault
+    def __init__(self, inner: Tracks, cue: Cue, fault: EncoderScale) -> None:
+        self._inner, self._cue, self._fault = inner, cue, fault
         self._true_m = self._said_m = self._travels(inner.read())
 
     def drive(self, left_m: float, right_m: float, speed_m_s: float) -> Action[TrackReading]:
-        left, right = self._fault.factors if self._active() else (1.0, 1.0)
+        left, right = self._fault.factors if self._cue.active else (1.0, 1.0)
         return _Miscounted(self._inner.drive(left_m / left, right_m / right, speed_m_s), self)
 
     def stop(self) -> None:
@@ -115,7 +114,7 @@ class _MiscountedTracks:
 
     def miscount(self, reading: TrackReading) -> TrackReading:
         """The reading as this encoder would have it."""
-        factors = self._fault.factors if self._active() else (1.0, 1.0)
+        factors = self._fault.factors if self._cue.active else (1.0, 1.0)
         true_m = self._travels(reading)
         steps = [now - before for now, before in zip(true_m, self._true_m, strict=True)]
         self._fault.miscounted_m += sum(abs(s * (f - 1.0)) for s, f in zip(steps, factors, strict=True))
@@ -151,6 +150,7 @@ FROZEN_FRAME = FaultSpec(
     Nothing,
     FrozenFrame,
     "marker_lost",
+    category="cameras",
 )
 ENCODER_SCALE = FaultSpec(
     "encoder_scale",
@@ -158,4 +158,5 @@ ENCODER_SCALE = FaultSpec(
     Scale,
     EncoderScale,
     "track_asymmetry",
+    category="tracks",
 )

@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import Protocol
 
 from executive.backends import BackendRequest
+from executive.chance import generator
 from executive.clock import Clock, Stopwatch
 from executive.errors import LongarmError
 from executive.ports import Cameras, Devices
 from executive.rig import RigCalibration
 from executive.types import Point, Segment
 from sim_pybullet.cameras import make_cameras
-from sim_pybullet.chance import generator
 from sim_pybullet.config import WorldConfig
 from sim_pybullet.link import SimLink
 from sim_pybullet.sunlight import Sun

@@ -56,8 +56,8 @@ class RockAhead(_Parameters):
 
 
 class _WorldFault(Fault):
-    def apply(self, backend: Backend, active: bool) -> None:
-        self.act(_world_of(backend), active)
+    def apply(self, backend: Backend, level: float) -> None:
+        self.act(_world_of(backend), level > 0.0)
 
     def act(self, world: WorldFaults, active: bool) -> None:
         raise TypeError(f"{type(self).__name__} does nothing")
@@ -114,10 +114,10 @@ def _world_of(backend: Backend) -> WorldFaults:
 
 
 LED_OFF = FaultSpec(
-    "led_off", "A marker goes out.", Marker, LedOff, "marker_lost", backends=BACKENDS, tiers=TIERS
+    "led_off", "A marker goes out.", Marker, LedOff, "marker_lost", BACKENDS, TIERS, category="markers"
 )
 LED_DIM = FaultSpec(
-    "led_dim", "A marker loses power.", Dimming, LedDim, "marker_lost", backends=BACKENDS, tiers=TIERS
+    "led_dim", "A marker loses power.", Dimming, LedDim, "marker_lost", BACKENDS, TIERS, category="markers"
 )
 SLIP_BURST = FaultSpec(
     "slip_burst",
@@ -127,6 +127,7 @@ SLIP_BURST = FaultSpec(
     "slip_longitudinal",
     backends=BACKENDS,
     tiers=TIERS,
+    category="terrain",
 )
 TRACK_WEAK = FaultSpec(
     "track_weak",
@@ -136,6 +137,7 @@ TRACK_WEAK = FaultSpec(
     "track_asymmetry",
     backends=BACKENDS,
     tiers=TIERS,
+    category="tracks",
 )
 ROCK_ON_PATH = FaultSpec(
     "rock_on_path",
@@ -145,5 +147,6 @@ ROCK_ON_PATH = FaultSpec(
     "stuck_on_obstacle",
     backends=BACKENDS,
     tiers=TIERS,
+    category="terrain",
     lasting=True,
 )

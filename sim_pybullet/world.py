@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from executive.chance import generator
 from executive.clock import Clock
 from executive.rig import RigCalibration
 from executive.types import Array, Segment
 from sim_pybullet.bullet import pybullet
 from sim_pybullet.cabin import SimCabin
-from sim_pybullet.chance import generator
 from sim_pybullet.config import WorldConfig
 from sim_pybullet.ground_body import add_rock, add_terrain
 from sim_pybullet.head import SimHead

@@ -72,6 +72,16 @@ class Source:
         """Where relative references at this place start from."""
         return next((self.folders[p] for p in _outwards(place) if p in self.folders), Path())
 
+    def part(self, place: Place) -> Source:
+        """What stands at a place, as a source of its own; every mark keeps its file."""
+        cut = len(place)
+        return Source(
+            self.get(place),
+            {p[cut:]: mark for p, mark in self.values.items() if _within(p, place)},
+            {p[cut:]: mark for p, mark in self.keys.items() if _within(p, place)},
+            {p[cut:]: folder for p, folder in self.folders.items() if _within(p, place)},
+        )
+
     def graft(self, place: Place, other: Source) -> Source:
         """This source with `other` in place of the value at `place`; every mark keeps its own file."""
         return replace(

@@ -151,6 +151,14 @@ class TerrainEvent:
 
 
 @dataclass(frozen=True)
+class FaultArmedEvent:
+    """The onset of an injected fault has come; it acts from now on wherever it can. `cause` if it has one."""
+
+    name: str
+    cause: str = ""
+
+
+@dataclass(frozen=True)
 class FaultEvent:
     """An injected fault took effect (`active`) or ceased. `hypothesis` is the diagnosis it should lead to."""
 

@@ -87,6 +87,7 @@ RECORD: tuple[Topic, ...] = (
     ),
     _own("/call", Call),
     _own("/terrain", events.TerrainEvent),
+    _own("/fault_armed", events.FaultArmedEvent),
     _own("/fault", events.FaultEvent),
     _fox("/log", events.LogEvent, Log, foxglove.log_message, foxglove.log_event),
 )

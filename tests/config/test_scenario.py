@@ -168,9 +168,9 @@ def test_temporal_logic_is_refused_as_not_there_yet(folder):
 @pytest.mark.parametrize(
     ("trigger", "message"),
     [
-        ("{}", "got none, expected exactly one of time, progress, waypoint, node, strategy, when"),
+        ("{}", "got none, expected exactly one of time, progress, waypoint, node, strategy, phase, when"),
         ("{time: 3 s, waypoint: 1}", "got time and waypoint, expected exactly one of"),
-        ("{count: 2, time: 3 s}", "got count without node, expected"),
+        ("{count: 2, time: 3 s}", "got count with time, expected it with one of node, strategy, phase"),
     ],
 )
 def test_a_fault_starts_in_exactly_one_way(folder, trigger, message):
@@ -181,8 +181,8 @@ def test_a_fault_starts_in_exactly_one_way(folder, trigger, message):
 @pytest.mark.parametrize(
     ("old", "new", "problem"),
     [
-        ("{progress: 40 %}", '{when: "tilt > 5 deg"}',
-         "scenarios/dark.yaml:8:12: `when` is not judged yet; expected one of time, progress, waypoint, node or strategy"),  # noqa: E501
+        ("{progress: 40 %}", '{when: "tlt > 5 deg"}',
+         "scenarios/dark.yaml:8:19: got 'tlt', expected a number, a signal or (...); did you mean \"tilt\"?"),
         ("{progress: 40 %}", "{waypoint: 3}",
          "scenarios/dark.yaml:8:22: got way-point 3, expected 0 to 2"),
         ("{progress: 40 %}", "{strategy: back_of}",

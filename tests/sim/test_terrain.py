@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import tifffile
 
-from sim_pybullet.chance import generator
+from executive.chance import generator
 from sim_pybullet.config import TerrainConfig
 from sim_pybullet.elevation_model import Window, cut, read_model
 from sim_pybullet.procedural import Relief, make_ground
