@@ -56,9 +56,9 @@ def _diagnosed(expect: Expect, result: Mapping[str, Any]) -> Row:
         raise ValueError("got no diagnosis to judge, expected one")
     text = f"{wanted.fault} diagnosed as {wanted.as_}"
     rows = [f for f in result["faults"] if f["name"] == wanted.fault and f["fired"]]
-    if not rows or rows[0]["t_detected_s"] is None or rows[0]["hypothesis"] != wanted.as_:
+    if not rows or rows[0]["t_isolated_s"] is None or rows[0]["expected"] != wanted.as_:
         return _row(text, False)
-    took = rows[0]["t_detected_s"] - rows[0]["t_on_s"]
+    took = rows[0]["t_isolated_s"] - rows[0]["t_on_s"]
     if wanted.within is None:
         return _row(text, True)
     return _row(f"{text} within {wanted.within:g} s", took <= wanted.within, wanted.within - took)
