@@ -51,6 +51,10 @@ class Localise(ActionLeaf):
         if not outcome.ok or outcome.value is None:
             self.services.journal.assessment(classification.failed(outcome))
             return outcome
+        if (impossible := classification.beyond_reach(outcome.value)) is not None:
+            refused: Outcome[PoseEstimate] = Outcome(Reason.IMPLAUSIBLE, impossible)
+            self.services.journal.assessment(classification.failed(refused))
+            return refused
         fix = outcome.value.on(self.segment)
         self.services.journal.assessment(classification.fixed(fix))
         self.services.journal.estimate(fix)
