@@ -14,6 +14,7 @@ from executive.backends import BackendRequest
 from executive.clock import Stopwatch
 from executive.errors import LongarmError, RecordError
 from executive.expectations import judge
+from executive.one_thread import one_thread
 from executive.pool import Strategy
 from executive.pool_plugins import load_strategies, strategy_trees
 from executive.progress import progress_bar
@@ -38,6 +39,8 @@ class RunOptions:
     tier: str | None = None
     overrides: Sequence[str] = ()
     bar: bool = True
+    report: bool = True
+    """Whether `report.html` is written; `longarm report` can do it later."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,7 @@ class Finished:
     folder: Path
     result: dict[str, Any]
     exit_code: int
+    defect: BaseException | None = None
 
 
 def run(file: Path, options: RunOptions) -> Finished:
@@ -54,7 +58,11 @@ def run(file: Path, options: RunOptions) -> Finished:
 
     A defect ends the run, not the folder: record, result and report are complete and `traceback.txt` tells.
     """
-    scenario = resolve_scenario(file, options.seed, options.tier, options.overrides)
+    return run_scenario(resolve_scenario(file, options.seed, options.tier, options.overrides), options)
+
+
+def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
+    """The same for a scenario already resolved; of the options, those that change it are without effect."""
     strategies = load_strategies()
     localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
     watch = Stopwatch()
@@ -65,14 +73,15 @@ def run(file: Path, options: RunOptions) -> Finished:
         (folder / stale).unlink(missing_ok=True)
     (folder / "scenario.yaml").write_text(scenario.dump())  # first, so that a run cut off can be repeated
     try:
-        end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
+        with one_thread():
+            end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
     except LongarmError:
         unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
         raise
     if end.defect is not None:
         write_traceback(folder, end.defect)
     try:
-        return _conclude(scenario, folder, end, watch)
+        return _conclude(scenario, folder, end, watch, options.report)
     except Exception as defect:
         write_traceback(folder, defect)
         raise
@@ -121,7 +130,9 @@ def _execute(
     return end
 
 
-def _conclude(scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch) -> Finished:
+def _conclude(
+    scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch, with_report: bool
+) -> Finished:
     record, truth = folder / "record.mcap", folder / "truth.mcap"
     figures = RunFigures(
         wall_s=round(watch.elapsed_s(), 3),
@@ -131,8 +142,10 @@ def _conclude(scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stop
     result = summarise(record, truth, figures)
     result["expectations"] = judge(scenario.expect, result)
     write_result(folder / "result.json", result)
-    write_report(folder, _tree_svg(folder))
-    return Finished(folder, json.loads((folder / "result.json").read_text()), _exit_code(end, result))
+    if with_report:
+        write_report(folder, _tree_svg(folder))
+    kept = json.loads((folder / "result.json").read_text())
+    return Finished(folder, kept, _exit_code(end, result), end.defect)
 
 
 def _tree_svg(folder: Path) -> str | None:
