@@ -18,7 +18,7 @@ import yaml
 from executive.chance import generator
 from executive.config.overrides import dotted
 from executive.config.source import Place, Source
-from executive.config.validate import shown
+from executive.config.validate import Problems, shown
 from executive.distributions import drawn, is_distribution
 from executive.errors import ConfigError
 from executive.fault_entries import RESERVED
@@ -85,13 +85,14 @@ def case_number(campaign: Campaign, number: int) -> Drawn:
     settings = campaign.settings
     draw, setting = number // len(settings), settings[number % len(settings)]
     seed = seed_of(campaign.file.seed, draw)
-    cells = campaign.cells
+    problems, cells = Problems(), campaign.cells
     values: dict[str, Source] = {
         **_fixed(campaign),
-        **_faults(campaign, seed),
-        **_varied(campaign, seed),
+        **(problems.attempt(lambda: _faults(campaign, seed)) or {}),
+        **_varied(campaign, seed, problems),
         **_cell(campaign, cells[draw % len(cells)]),
     }
+    problems.check()
     for key in (campaign.file.compare or {}).get(setting, {}):
         values[key] = campaign.source.part(("compare", setting, key))
     return Drawn(number, draw, setting, seed, values)
@@ -157,8 +158,12 @@ def _fixed(campaign: Campaign) -> dict[str, Source]:
     return fixed
 
 
-def _varied(campaign: Campaign, seed: int) -> dict[str, Source]:
-    return {key: draw_at(campaign, ("vary", key), seed) for key in campaign.file.vary}
+def _varied(campaign: Campaign, seed: int, problems: Problems) -> dict[str, Source]:
+    drawn = {
+        key: problems.attempt(lambda key=key: draw_at(campaign, ("vary", key), seed))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+        for key in campaign.file.vary
+    }
+    return {key: value for key, value in drawn.items() if value is not None}
 
 
 def _cell(campaign: Campaign, chosen: Mapping[str, int]) -> dict[str, Source]:

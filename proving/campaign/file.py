@@ -9,10 +9,10 @@ from typing import Any
 
 from executive.config.find import find, names, shown
 from executive.config.source import Mark, Place, Source, read
-from executive.config.validate import Problems, parse
+from executive.config.validate import Problems, listed, parse
 from executive.config.validate import shown as shown_data
 from executive.distributions import NAMES, is_distribution
-from executive.errors import ConfigError
+from executive.errors import ConfigError, Problem
 from executive.file_kinds import FileKind
 from executive.scenario import as_scenario
 from executive.schema import schema
@@ -40,12 +40,9 @@ def checked(source: Source) -> Campaign:
     problems = Problems()
     file = problems.attempt(lambda: parse(source, CampaignFile))
     scenario = problems.attempt(lambda: _scenario(source))
-    if file is not None:
-        for key, place in _keys(file):
-            problems.attempt(lambda key=key, place=place: _check_key(source, file, key, place))  # type: ignore[misc]  # mypy cannot infer bound lambdas
-    problems.check()
+    problems.found.extend(problem for place in _keys(source) for problem in _of_key(source, place))
     if file is None or scenario is None:
-        raise ConfigError([])  # not reached: what is missing is a problem
+        raise ConfigError(problems.found)
     campaign = Campaign(file, source, scenario)
     for case in _samples(campaign, problems):
         problems.attempt(lambda case=case: resolved(campaign, case))  # type: ignore[misc]  # mypy cannot infer bound lambdas
@@ -65,25 +62,25 @@ def _scenario(source: Source) -> Source:
     return as_scenario(read(path, shown(path)))
 
 
-def _keys(file: CampaignFile) -> Iterator[tuple[str, Place]]:
-    yield from ((key, ("vary", key)) for key in file.vary)
-    yield from ((key, ("grid", key)) for key in file.grid)
-    for name, values in (file.compare or {}).items():
-        yield from ((key, ("compare", name, key)) for key in values)
+def _keys(source: Source) -> Iterator[Place]:
+    """Where the file says which keys of the scenario vary; what is no mapping is told elsewhere."""
+    compare = source.data.get("compare") if isinstance(source.data, dict) else None
+    settings = [("compare", name) for name in compare] if isinstance(compare, dict) else []
+    for part in (("vary",), ("grid",), *settings):
+        if part in source.values and isinstance(source.get(part), dict):
+            yield from ((*part, key) for key in source.get(part))
 
 
-def _check_key(source: Source, file: CampaignFile, key: str, place: Place) -> None:
-    mark = source.key_at(place)
+def _of_key(source: Source, place: Place) -> Iterator[Problem]:
+    """What is wrong with one of them."""
+    key, mark = str(place[-1]), source.key_at(place)
     if key in _OWN_KEYS or not all(key.split(".")):
-        raise ConfigError(
-            [mark.problem(f'got "{key}", expected a key of the scenario beside its seed and tier')]
-        )
-    if place[0] == "grid" and key in file.vary:
-        raise ConfigError([mark.problem(f'got "{key}" in vary and in grid, expected it in one of them')])
-    if place[0] == "vary" and not is_distribution(source.get(place)):
+        yield mark.problem(f'got "{key}", expected a key of the scenario other than {listed(_OWN_KEYS)}')
+    elif place[0] == "grid" and ("vary", key) in source.values:
+        yield mark.problem(f'got "{key}" in vary and in grid, expected it in one of them')
+    elif place[0] == "vary" and not is_distribution(source.get(place)):
         got = shown_data(source.get(place))
-        message = f"got {got}, expected a distribution: {{NAME: ...}} with NAME one of {', '.join(NAMES)}"
-        raise ConfigError([source.at(place).problem(message)])
+        yield source.at(place).problem(f"got {got}, expected a distribution: {listed(NAMES)} of something")
 
 
 def _samples(campaign: Campaign, problems: Problems) -> Iterator[Drawn]:
