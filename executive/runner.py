@@ -114,6 +114,7 @@ def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
         run.trace.terminate_entered,
         changes.write,
         run.backend.safe_stop,
+        lambda: _see_it_rest(run),
         lambda: run.journal.write(events.Stop(end.outcome, end.reason)),
         run.recorder.close,
         run.backend.close,
@@ -126,6 +127,13 @@ def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
         except Exception as defect:
             end = RunEnd("error", _one_line(end.defect or defect), end.defect or defect)
     return end
+
+
+def _see_it_rest(run: Run) -> None:
+    """One more tick, and what the rover reports after it: a stop that nobody looked at proves nothing."""
+    run.backend.advance()
+    now = run.services.classification.sense(run.services.devices)
+    run.journal.telemetry(now, run.services.devices, run.services.classification.predicted())
 
 
 def _one_line(defect: BaseException) -> str:

@@ -6,6 +6,7 @@ import copy
 from enum import Enum
 from typing import Any
 
+from executive.config.expect import LISTS
 from executive.config.models import MissionFile, ScenarioFile
 from executive.nodes.base import REQUIRED, Direction, PortSpec
 from executive.tree.catalogue import NodeType, node_types
@@ -32,6 +33,10 @@ def _scenario() -> dict[str, Any]:
     inline = copy.deepcopy(made["properties"]["mission"])
     name = {"type": "string", "description": "a mission file: a path or a bare name"}
     made["properties"]["mission"] = {"anyOf": [name, inline]}
+    expect = made["$defs"]["Expect"]["properties"]
+    for name_of_list in LISTS:
+        several = {key: expect[name_of_list].pop(key) for key in ("type", "items")}
+        expect[name_of_list]["anyOf"] = [several["items"], several]
     return made
 
 
