@@ -50,20 +50,23 @@ class Localise(ActionLeaf):
     def finish(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
         classification = self.services.classification
         self.services.journal.views(self.services.localizer.views(), outcome)
-        if outcome.ok and outcome.value is not None and (why := unusable(outcome.value, self._start_s)):
-            outcome = Outcome(Reason.IMPLAUSIBLE, why)
+        outcome = self.held_against_what_can_be(outcome)
         if not outcome.ok or outcome.value is None:
             self.services.journal.assessment(classification.failed(outcome))
             return outcome
-        if (impossible := classification.beyond_reach(outcome.value)) is not None:
-            refused: Outcome[PoseEstimate] = Outcome(Reason.IMPLAUSIBLE, impossible)
-            self.services.journal.assessment(classification.failed(refused))
-            return refused
         fix = outcome.value.on(self.segment)
         self.services.journal.assessment(classification.fixed(fix))
         self.services.journal.estimate(fix)
         self.pose = fix
         return Outcome(Reason.DONE, _summary(fix), fix)
+
+    def held_against_what_can_be(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
+        """The outcome; IMPLAUSIBLE in place of a pose that is no number, old, or out of the belts' reach."""
+        if not outcome.ok or outcome.value is None:
+            return outcome
+        why = unusable(outcome.value, self._start_s)
+        why = why or self.services.classification.beyond_reach(outcome.value)
+        return Outcome(Reason.IMPLAUSIBLE, why) if why else outcome
 
 
 def _summary(fix: PoseEstimate) -> str:
