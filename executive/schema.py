@@ -6,6 +6,7 @@ import copy
 from enum import Enum
 from typing import Any
 
+from executive import fault_schema
 from executive.config.models import MissionFile, ScenarioFile
 from executive.nodes.base import REQUIRED, Direction, PortSpec
 from executive.tree.catalogue import NodeType, node_types
@@ -32,6 +33,7 @@ def _scenario() -> dict[str, Any]:
     inline = copy.deepcopy(made["properties"]["mission"])
     name = {"type": "string", "description": "a mission file: a path or a bare name"}
     made["properties"]["mission"] = {"anyOf": [name, inline]}
+    made["properties"]["faults"] = fault_schema.faults(made["$defs"])
     return made
 
 
