@@ -6,6 +6,7 @@ import copy
 from enum import Enum
 from typing import Any
 
+from executive import fault_schema
 from executive.config.expect import LISTS
 from executive.config.models import MissionFile, ScenarioFile
 from executive.nodes.base import REQUIRED, Direction, PortSpec
@@ -37,6 +38,7 @@ def _scenario() -> dict[str, Any]:
     for name_of_list in LISTS:
         several = {key: expect[name_of_list].pop(key) for key in ("type", "items")}
         expect[name_of_list]["anyOf"] = [several["items"], several]
+    made["properties"]["faults"] = fault_schema.faults(made["$defs"])
     return made
 
 
