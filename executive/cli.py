@@ -104,15 +104,15 @@ def run(
 
 
 @cli.command()
-@click.argument("run_dir", type=FILE)
-def report(run_dir: Path) -> int:
-    """Write the self-contained report.html of a run folder anew, from its record.
+@click.argument("folder", type=FILE)
+def report(folder: Path) -> int:
+    """Write the self-contained report.html of a run or campaign folder anew, from its record.
 
     Example: longarm report runs/first_traverse-7
     """
     from executive import app
 
-    click.echo(app.report(run_dir))
+    click.echo(app.report(folder))
     return 0
 
 
