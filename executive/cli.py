@@ -13,7 +13,7 @@ import click
 
 from executive.errors import LongarmError
 
-NOT_YET = ("test", "campaign", "import", "explain", "replay", "minimise")
+NOT_YET = ("test", "campaign", "import", "replay", "minimise")
 DEFECT = 3
 
 
@@ -113,6 +113,25 @@ def report(folder: Path) -> int:
     from executive import app
 
     click.echo(app.report(folder))
+    return 0
+
+
+@cli.command()
+@click.argument("run_dir", type=FILE)
+@click.option("--at", metavar="TIME", help="Mission time such as '12 min' or 720; the end by default.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def explain(run_dir: Path, at: str | None, as_json: bool) -> int:
+    """Say why: the chain from leaf to root, hypotheses with weights, what was tried and why that.
+
+    Example: longarm explain runs/marker_out-7 --at "20 min"
+    """
+    from executive import explain as explaining
+
+    found = explaining.explain(run_dir, at)
+    if as_json:
+        click.echo(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
+    else:
+        click.echo(explaining.as_text(found), nl=False)
     return 0
 
 
