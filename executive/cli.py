@@ -13,7 +13,7 @@ import click
 
 from executive.errors import LongarmError
 
-NOT_YET = ("test", "campaign", "import", "replay", "minimise")
+NOT_YET = ("test", "campaign", "replay", "minimise")
 DEFECT = 3
 
 
@@ -188,6 +188,25 @@ def show(tree: str, form: str, output: Path | None) -> int:
         output.write_bytes(content)
     else:
         click.echo(content, nl=False)
+    return 0
+
+
+@cli.command("import")
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, default=Path("trees"), show_default=True, help="Where to write.")
+@click.option("--force", is_flag=True, help="Replace files that are there already.")
+def import_(file: Path, output: Path, force: bool) -> int:
+    """Turn BehaviorTree.CPP v4 XML into tree files, one a tree; what reads a little differently is told.
+
+    Example: longarm import mission.xml -o trees
+    """
+    from executive import importing
+
+    imported = importing.import_file(file)
+    for path in importing.write_trees(imported.trees, output, force):
+        click.echo(path)
+    for note in imported.notes:
+        click.echo(f"{note.file}:{note.line}:{note.column}: note: {note.message}", err=True)
     return 0
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -103,7 +103,7 @@ def explain(folder: Path, at: str | None = None) -> Explanation:
         at_s=at_s,
         end_s=history.end_s,
         chain=chain,
-        failure=moment.failure([at.time_s for at in (*strategies, *refused)], chain[0].path if chain else ""),
+        failure=moment.failure([*_times(strategies), *_times(refused)], chain[0].path if chain else ""),
         pose=poses[-1] if poses else None,
         hypotheses=_ranked(weighed[-1].event.weights) if weighed else {},
         weighed_s=weighed[-1].time_s if weighed else None,
@@ -118,6 +118,10 @@ def explain(folder: Path, at: str | None = None) -> Explanation:
 
 def _until(history: History, kind: type[T], at_s: float) -> list[At[T]]:
     return [at for at in history.all(kind) if at.time_s <= at_s]
+
+
+def _times(events: Sequence[At[Any]]) -> list[float]:
+    return [at.time_s for at in events]
 
 
 def _time(text: str, end_s: float) -> float:
