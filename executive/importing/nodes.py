@@ -122,7 +122,7 @@ class Translator:
                 words = f"got {len(tag.children)} children of {tag.name}, expected exactly one"
                 self.problem(tag.mark, words)
             inner = [self.node(child, (*place, "child")) for child in tag.children]
-            return content | {"child": child for child in inner[:1]}
+            return content | ({"child": inner[0]} if inner else {})
         children = [self.node(child, (*place, "children", n)) for n, child in enumerate(tag.children)]
         if known is not None and known.children == "none" and children:
             self.problem(tag.children[0].mark, f"got a child of the leaf {kind}, expected none")

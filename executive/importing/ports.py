@@ -12,7 +12,7 @@ from executive.importing.nodes import plain
 from executive.nodes.base import Direction, PortSpec
 from executive.tree.catalogue import ITEMS, NodeType
 from executive.tree.spec import GUARDS
-from executive.values import TEXT, VALUE_TYPES
+from executive.values import FLAG, NUMBER, TEXT, VALUE_TYPES
 
 _NAME = re.compile(r"\{\s*([A-Za-z_]\w*)((?:\.\w+)*)\s*\}")
 _FOREIGN = {
@@ -27,9 +27,13 @@ _DIRECTIONS = {"input_port": "in", "output_port": "out", "inout_port": "inout"}
 
 @dataclass
 class Use:
-    """What a tree's nodes do with one of its values; `type` is that of the first port it is given to."""
+    """What a tree's nodes do with one of its values.
+
+    `type` is that of the first port it is given to, `guessed` what a guard takes it for.
+    """
 
     type: str | None = None
+    guessed: str | None = None
     read: bool = False
     written: bool = False
 
@@ -59,6 +63,7 @@ def uses(node: Any, types: Mapping[str, NodeType], trees: Mapping[str, Mapping[s
         for word in GUARDS:
             for name, _ in _NAME.findall(str(beside.get(word, ""))):
                 found.add(name, None, Direction.IN)
+                found.of[name].guessed = found.of[name].guessed or _guessed(beside[word], name)
         if kind == "for_each" and isinstance(content.get("as"), str):
             found.items.add(content["as"])
             found.of.setdefault(content["as"], Use()).type = next(iter(ITEMS.values())).name
@@ -92,8 +97,8 @@ def completed(
         use = found.of.get(name, Use())
         port = {"type": None, "direction": use.direction} | ports.get(name, {})
         if port["type"] not in VALUE_TYPES:
-            port["type"] = use.type or TEXT.name
-            if use.type is None:
+            port["type"] = use.type or use.guessed or TEXT.name
+            if use.type is None and use.guessed is None:
                 untold.append(name)
         made[name] = port
     return made, untold
@@ -109,6 +114,17 @@ def walk(node: Any) -> Iterator[tuple[str, Mapping[str, Any], Mapping[str, Any]]
     yield kind, {} if isinstance(content, list) else content, node
     for child in children:
         yield from walk(child)
+
+
+def _guessed(guard: str, name: str) -> str | None:
+    """What a guard takes a value for: a number where it is compared or computed with, else a flag."""
+    value = rf"\{{\s*{name}\s*\}}"
+    if re.search(rf"{value}\s*[=!]=\s*['\"]|['\"]\s*[=!]=\s*{value}", guard):
+        return TEXT.name
+    computed = rf"{value}\s*[-+*/<>=!]|([-+*/<>=]|(abs|min|max)\([^()]*)\s*{value}"
+    if re.search(computed, guard):
+        return NUMBER.name
+    return FLAG.name if re.search(value, guard) else None
 
 
 def _port(
