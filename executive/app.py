@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from executive import plugins
 from executive.assembly import TICK_S, set_up, write_start
@@ -90,9 +90,13 @@ def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
 
 
 def report(folder: Path) -> Path:
-    """(Re)write the report of a run folder from its record; RecordError where there is none."""
+    """(Re)write the report of a run or campaign folder from its record; RecordError where there is none."""
+    for name in plugins.found(plugins.REPORTERS):
+        if (folder / f"{name}.json").is_file():
+            reporter = cast("Callable[[Path], Path]", plugins.load(plugins.REPORTERS, name))
+            return reporter(folder)
     if not (folder / "record.mcap").is_file():
-        raise RecordError(f"{folder}: got no record.mcap, expected a run folder")
+        raise RecordError(f"{folder}: got no record.mcap, expected a run or campaign folder")
     return write_report(folder, _tree_svg(folder))
 
 
