@@ -139,21 +139,27 @@ def _execute(
 def _conclude(
     scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch, with_report: bool
 ) -> Finished:
-    record, truth = folder / "record.mcap", folder / "truth.mcap"
     figures = RunFigures(
         wall_s=round(watch.elapsed_s(), 3),
         wall={part: round(spent, 3) for part, spent in sorted(watch.spent_s.items())},
         waypoints_total=len(scenario.mission.waypoints),
     )
-    history, world = History.of(record), History.of(truth) if truth.is_file() else History.empty()
-    result = summary_of(history, world, digest(record), figures)
-    result["expectations"] = judge(scenario.expect, result, history, world)
-    result["safety"] = safety_rows(history, world, scenario.rig)
+    result = judged(scenario, folder, figures)
     write_result(folder / "result.json", result)
     if with_report:
         write_report(folder, _tree_svg(folder))
     kept = json.loads((folder / "result.json").read_text())
     return Finished(folder, kept, _exit_code(scenario.expect, result), end.defect)
+
+
+def judged(scenario: ResolvedScenario, folder: Path, figures: RunFigures) -> dict[str, Any]:
+    """The content of `result.json` from the records of a run, complete or cut off."""
+    record, truth = folder / "record.mcap", folder / "truth.mcap"
+    history, world = History.of(record), History.of(truth) if truth.is_file() else History.empty()
+    result = summary_of(history, world, digest(record), figures)
+    result["expectations"] = judge(scenario.expect, result, history, world)
+    result["safety"] = safety_rows(history, world, scenario.rig)
+    return result
 
 
 def _tree_svg(folder: Path) -> str | None:

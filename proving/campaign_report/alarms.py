@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from executive.errors import RecordError
 from executive.report.tables import Table
 from executive.telemetry import History
-from executive.telemetry.events import HypothesesEvent
-from executive.telemetry.result import NOMINAL, leading
+from executive.telemetry.evidence import episodes
 from proving.campaign_report.case import Case
 from proving.campaign_report.gather import Campaign
 
@@ -44,14 +43,9 @@ def alarms(campaign: Campaign) -> Alarms:
 def _alarms(case: Case) -> Counter[str]:
     """The hypotheses that took over from the nominal one, one count each time."""
     try:
-        events = History.of(case.folder / "record.mcap").all(HypothesesEvent)
+        return Counter(at.event for at in episodes(History.of(case.folder / "record.mcap")))
     except RecordError:
         return Counter()
-    leaders = [leading(at.event) or NOMINAL for at in events]
-    before = [NOMINAL, *leaders]
-    return Counter(
-        now for now, last in zip(leaders, before, strict=False) if now != NOMINAL and last == NOMINAL
-    )
 
 
 def alarm_table(found: Alarms) -> Table:
