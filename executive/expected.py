@@ -18,7 +18,7 @@ from executive.temporal import Always, Eventually, Formula, Until, parse_formula
 def formulas(expect: Expect) -> list[tuple[str, Formula]]:
     """Every formula that must hold of the run as a whole, and the text that stands for it."""
     return [
-        (text if key in WHOLE else f"{key} {text}", parse(text))
+        (text if key in WHOLE else f"{key} ({text})", parse(text))
         for key, parse in PARSERS.items()
         for text in getattr(expect, key)
     ]

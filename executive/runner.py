@@ -141,7 +141,8 @@ def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
 
 
 def _see_it_rest(run: Run) -> None:
-    """One more tick, and what the rover reports after it: a stop that nobody looked at proves nothing."""
+    """A tick to settle, one that must find it there, and a report: a stop nobody saw proves nothing."""
+    run.backend.advance()
     run.backend.advance()
     now = run.services.classification.sense(run.services.devices)
     run.journal.telemetry(now, run.services.devices, run.services.classification.predicted())

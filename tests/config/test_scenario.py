@@ -5,9 +5,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from executive import plugins
 from executive.config.find import find
 from executive.config.mission import load_mission
 from executive.config.source import Mark
+from executive.config.validate import listed
 from executive.errors import ConfigError, PluginError
 from executive.rig import RigCalibration
 from executive.scenario import resolve_scenario
@@ -81,6 +83,7 @@ def test_a_mission_is_a_scenario_with_defaults(folder):
 
 
 def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
+    faults = listed(sorted(plugins.found(plugins.FAULTS)))
     (folder / "scenarios" / "dark.yaml").write_text(
         "scenario: dark\nmission: short\nseed: -1\ntier: ful\nbackend: plain\n"
         "world: {light: {sun_elevaton: 35 deg}, mast_height: 30}\n"
