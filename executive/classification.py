@@ -11,6 +11,7 @@ from executive.clock import Clock
 from executive.hypotheses import FAILURE_CODES, PRIOR, SEEING, Channel, Evidence, Hypothesis, weigh, without
 from executive.ports import Devices
 from executive.prediction import MotionNoise, MotionState
+from executive.reach import Reach
 from executive.rig import RigCalibration
 from executive.types import (
     Outcome,
@@ -88,6 +89,7 @@ class Classification:
         self._since = _SinceFix()
         self._undoubted: MotionState | None = None
         self._current_baseline_a: float | None = None
+        self._reach: Reach | None = None
 
     def sense(self, devices: Devices) -> Telemetry:
         """Read the continuous channels once and carry the prediction on with them."""
@@ -106,6 +108,8 @@ class Classification:
         gauge = self._rig.rover.track_gauge_m
         before = self.motion
         self.motion = prediction.predict(before, left_m, right_m, gauge, self._clock.now_s, self.noise)
+        if self._reach is not None:
+            self._reach = self._reach.driven(left_m, right_m, gauge)
         travel, rotation = (left_m + right_m) / 2, (right_m - left_m) / gauge
         self._since.advance_m += before.advance * travel
         self._since.turn_rad += before.yaw_efficiency * rotation + before.drift_rad_m * travel
@@ -113,6 +117,10 @@ class Classification:
     def predicted(self) -> PoseEstimate:
         """Where the rover should be now."""
         return self.motion.pose()
+
+    def beyond_reach(self, fix: PoseEstimate) -> str | None:
+        """Why the rover cannot have come to where a fix sees it, None if it can."""
+        return None if self._reach is None else self._reach.beyond(fix)
 
     def fixed(self, fix: PoseEstimate) -> Assessment:
         """Compare a precise fix with the prediction, weigh, and learn if the fix is explained."""
@@ -127,6 +135,7 @@ class Classification:
             self.motion = prediction.relocate(self.motion, fix)
         self._remember_baseline()
         self._since = _SinceFix()
+        self._reach = Reach(fix)
         return self.assess(fix)
 
     def failed(self, outcome: Outcome[object]) -> Assessment:

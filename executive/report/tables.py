@@ -71,19 +71,25 @@ def strategies(run: Run) -> Table:
     return Table("strategies", "Strategies", header, rows)
 
 
+FAULT_STAGES = ("armed", "on", "observable", "detected", "isolated", "recovered", "off")
+
+
 def faults(run: Run) -> Table:
     rows = tuple(
         (
             row["name"],
-            "yes" if row["fired"] else "NO",
-            *(_time(row.get(k)) for k in ("t_on_s", "t_detected_s", "t_recovered_s")),
+            *(_time(row.get(f"t_{stage}_s")) for stage in FAULT_STAGES),
             row.get("hypothesis") or "–",
+            row.get("expected") or "–",
         )
         for row in run.result.get("faults", [])
     )
-    return Table(
-        "faults", "Injected faults", ("fault", "fired", "on", "detected", "recovered", "diagnosis"), rows
+    note = (
+        "Armed when its onset came, fired when it altered something; the run is invalid where it never did."
     )
+    stages = ("armed", "fired", "observable", "detected", "isolated", "recovered", "ended")
+    header = ("fault", *stages, "concluded", "expected")
+    return Table("faults", "Injected faults", header, rows, note if rows else "")
 
 
 def expectations(run: Run) -> Table:

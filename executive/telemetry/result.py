@@ -12,8 +12,6 @@ import numpy as np
 
 from executive.telemetry.digest import digest
 from executive.telemetry.events import (
-    FaultEvent,
-    HypothesesEvent,
     NodeChange,
     RouteEvent,
     SegmentEvent,
@@ -23,6 +21,7 @@ from executive.telemetry.events import (
     Verdict,
     WaypointEvent,
 )
+from executive.telemetry.evidence import false_alarms, fault_rows
 from executive.telemetry.history import At, History
 from executive.telemetry.truth import PoseError, Track, cross_track, driven_beyond_m
 from executive.types import PoseEstimate, Reason, Source
@@ -30,10 +29,6 @@ from executive.types import PoseEstimate, Reason, Source
 SCHEMA = 1
 NO_STOP = "the record ends without a stop"
 VISION_REASONS = frozenset({Reason.NOT_SEEN, Reason.POOR_VIEW, Reason.UNSTABLE_IMAGES, Reason.IMPLAUSIBLE})
-NOMINAL = "nominal"
-DETECTION_GRACE_S = (
-    600.0  # a check may come some time after a passing fault; later, it is about something else
-)
 _TRUTH_KEYS = (
     "final_error_m",
     "waypoint_errors_m",
@@ -60,20 +55,26 @@ def summarise(record: Path, truth: Path | None, figures: RunFigures | None = Non
 
     RecordError if there is no record.
     """
-    figures = figures or RunFigures()
     history = History.of(record)
     world = History.of(truth) if truth is not None and truth.is_file() else History.empty()
+    return summary_of(history, world, digest(record), figures or RunFigures())
+
+
+def summary_of(history: History, world: History, content: str, figures: RunFigures) -> dict[str, object]:
+    """The same from what was read already; `content` is the digest of the record."""
     track = Track.of(world)
+    faults = fault_rows(history, world)
     summary = {
         "schema": SCHEMA,
-        **_identity(history, digest(record)),
+        **_identity(history, content),
         "wall_s": figures.wall_s,
         "wall": dict(figures.wall),
         "waypoints": _waypoints(history, figures.waypoints_total),
         "truth": dict.fromkeys(_TRUTH_KEYS) if track is None else _truth(history, track),
         "localisation": _localisation(history, track),
         "strategies": strategy_rows(history),
-        "faults": fault_rows(history, world),
+        "faults": faults,
+        "false_alarms": false_alarms(history, faults),
         "expectations": [dict(e) for e in figures.expectations],
     }
     return _strict(summary)  # type: ignore[return-value]  # a dict in is a dict out
@@ -117,7 +118,7 @@ def _truth(history: History, track: Track) -> dict[str, object]:
         "final_error_m": _final_error_m(history, track),
         "waypoint_errors_m": [waypoint_error_m(track, at) for at in history.all(WaypointEvent)],
         "max_cross_track_m": float(known.max()) if known.size else None,
-        "driven_beyond_off_track_m": driven_beyond_m(track, cross),
+        "driven_beyond_off_track_m": float(driven_beyond_m(track, cross)[-1]),
         "max_tilt_deg": math.degrees(track.tilt_rad().max()),
         "path_m": float(track.steps_m().sum()),
         "tether_max_n": float(track.tether_n.max()),
@@ -200,44 +201,6 @@ def _strategy_row(time_s: float, event: StrategyEvent) -> dict[str, object]:
         "t_end_s": None,
         "why": event.why,
     }
-
-
-def fault_rows(history: History, world: History) -> list[dict[str, object]]:
-    """One row per injected fault, with the times at which its diagnosis led and the nominal led again."""
-    events = sorted(history.all(FaultEvent) + world.all(FaultEvent), key=lambda at: at.time_s)
-    rows = []
-    for name in dict.fromkeys(at.event.name for at in events):
-        on = next((at for at in events if at.event.name == name and at.event.active), None)
-        off = next((at for at in events if at.event.name == name and not at.event.active), None)
-        diagnosis = on.event.hypothesis if on else ""
-        until = off.time_s + DETECTION_GRACE_S if off else math.inf
-        detected = _leads(history, diagnosis, on.time_s, until) if on else None
-        recovered = _leads(history, NOMINAL, detected) if detected is not None else None
-        rows.append(
-            {
-                "name": name,
-                "fired": on is not None,
-                "t_on_s": on.time_s if on else None,
-                "t_off_s": off.time_s if off else None,
-                "t_detected_s": detected,
-                "hypothesis": diagnosis or None,
-                "t_recovered_s": recovered,
-            }
-        )
-    return rows
-
-
-def leading(event: HypothesesEvent) -> str | None:
-    """The hypothesis with the largest weight, None if there are no weights."""
-    return max(event.weights, key=event.weights.__getitem__, default=None)
-
-
-def _leads(history: History, hypothesis: str, from_s: float, until_s: float = math.inf) -> float | None:
-    """The first time from `from_s` to `until_s` when the hypothesis has the largest weight [s]."""
-    for time_s, event in history.all(HypothesesEvent):
-        if from_s <= time_s <= until_s and leading(event) == hypothesis:
-            return time_s
-    return None
 
 
 def _strict(value: object) -> object:

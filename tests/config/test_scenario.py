@@ -97,10 +97,11 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
         'frozen_frame, lamp_off, led_dim, led_off, rock_on_path, slip_burst or track_weak; did you mean "lamp_off"?',  # noqa: E501
         "scenarios/dark.yaml:9:24: got 7, expected less than or equal to 3",
         "scenarios/dark.yaml:10:18: got '3 m' (a length), expected a duration such as '36 s'",
-        'scenarios/dark.yaml:11:19: got "reachd", expected reached, safe_hold, help or time_limit; '
+        'scenarios/dark.yaml:11:19: got "reachd", expected reached, safe_hold, help, time_limit or error; '
         'did you mean "reached"?',
+        "scenarios/dark.yaml:11:35: got an angle, expected something true or false",
         'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, mission, seed, tier, '  # noqa: E501
-        'backend, localizer, world, rig, faults, expect or time_limit; did you mean "time_limit"?',
+        'backend, localizer, world, rig, faults, expect, expected_to_fail or ...; did you mean "time_limit"?',
     ]
 
 
@@ -158,18 +159,12 @@ def test_a_plugin_that_cannot_be_loaded_is_named(folder):
         resolve_scenario(path)
 
 
-def test_temporal_logic_is_refused_as_not_there_yet(folder):
-    path = rewritten(folder, "  outcome: reached", '  always: "tilt < 25 deg"')
-    assert problems_of(path) == [
-        "scenarios/dark.yaml:11:3: temporal logic is not judged yet; expected a scenario without it"
-    ]
-
-
 @pytest.mark.parametrize(
     ("trigger", "message"),
     [
         ("{}", "got none, expected exactly one of time, progress, waypoint, node, strategy, phase, when"),
         ("{time: 3 s, waypoint: 1}", "got time and waypoint, expected exactly one of"),
+        ("{time: 3 s, edge: rise}", "got edge with time, expected it with when"),
         ("{count: 2, time: 3 s}", "got count with time, expected it with one of node, strategy, phase"),
     ],
 )
@@ -270,3 +265,29 @@ def test_inputs_of_the_tree_are_checked_against_its_ports(folder):
         "missions/short.yaml:3:22: got '2 m' (a length), expected a duration such as '36 s'",
         'missions/short.yaml:3:27: got the unknown input "puse" of go, expected route or pause; did you mean "pause"?',  # noqa: E501
     ]
+
+
+@pytest.mark.parametrize(
+    ("profile", "problem"),
+    [
+        ("ramp", 'scenarios/dark.yaml:10:14: got "ramp", expected step, or a mapping'),
+        ("{ramp: 3 min}", "scenarios/dark.yaml:10:15: got a ramp of lamp_off, which is there or not"),
+        ("{}", "scenarios/dark.yaml:10:14: got none, expected exactly one of ramp"),
+        ("{random: {every: 3 min}}", 'scenarios/dark.yaml:10:23: got no "lasts"'),
+    ],
+)
+def test_a_profile_that_cannot_be_is_refused_in_its_place(folder, profile, problem):
+    (told,) = problems_of(rewritten(folder, "    for: 20 min", f"    for: 20 min\n    profile: {profile}"))
+    assert told.startswith(problem)
+
+
+def test_a_problem_inside_a_group_is_told_where_it_stands(folder):
+    group = "  - group: storm\n    from: {progress: 40 %}\n    faults:\n      - lamp_off: {marker: 7}\n"
+    old = "  - lamp_off: {marker: 2}\n    from: {progress: 40 %}\n    for: 20 min\n"
+    (told,) = problems_of(rewritten(folder, old, group))
+    assert told.startswith("scenarios/dark.yaml:10:28: got 7")
+
+
+def test_a_group_without_faults_is_refused(folder):
+    (told,) = problems_of(rewritten(folder, "lamp_off: {marker: 2}", "group: storm"))
+    assert told.startswith("scenarios/dark.yaml:7:5: got a group without a list of faults")

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from executive.telemetry import RunFigures, TruthRecorder, summarise, write_result
 from executive.telemetry.events import (
+    FaultArmedEvent,
     FaultEvent,
     HypothesesEvent,
     NodeChange,
@@ -114,22 +115,67 @@ def test_strategy_row_joins_the_choice_with_its_verdict(tmp_path):
     assert [(r["t_s"], r["t_end_s"], r["helped"]) for r in rows] == [(5.0, 9.0, False), (11.0, None, None)]
 
 
-def test_fault_is_detected_when_its_diagnosis_leads(tmp_path):
-    def weigh(nominal):
-        return HypothesesEvent({"nominal": nominal, "marker_lost": 1 - nominal})
+def weigh(nominal, **others):
+    rest = 1 - nominal - sum(others.values())
+    return HypothesesEvent({"nominal": nominal, "marker_lost": rest, **others})
 
+
+def test_each_stage_of_a_fault_has_its_time(tmp_path):
     events = [
-        (9.0, weigh(0.1)),
+        (8.0, weigh(0.6)),
+        (9.0, FaultArmedEvent("led_off", "storm")),
         (10.0, FaultEvent("led_off", True, "marker_lost")),
         (12.0, weigh(0.6)),
+        (13.0, weigh(0.1, overshoot=0.8)),
         (14.0, weigh(0.3)),
         (20.0, FaultEvent("led_off", False)),
         (30.0, weigh(0.8)),
     ]
+    result = run(tmp_path, [(0.0, 0.0, 0.0)], events)
+    (row,) = result["faults"]
+    assert row == {
+        "name": "led_off",
+        "cause": "storm",
+        "fired": True,
+        "t_armed_s": 9.0,
+        "t_on_s": 10.0,
+        "t_off_s": 20.0,
+        "t_observable_s": 12.0,
+        "t_detected_s": 13.0,
+        "t_isolated_s": 14.0,
+        "hypothesis": "marker_lost",
+        "expected": "marker_lost",
+        "t_recovered_s": 30.0,
+    }
+    assert result["false_alarms"] == []
+
+
+def test_what_was_concluded_instead_is_told(tmp_path):
+    events = [(10.0, FaultEvent("led_off", True, "marker_lost")), (13.0, weigh(0.1, overshoot=0.8))]
     (row,) = run(tmp_path, [(0.0, 0.0, 0.0)], events)["faults"]
-    assert (row["t_on_s"], row["t_off_s"]) == (10.0, 20.0)
-    assert (row["t_detected_s"], row["t_recovered_s"]) == (14.0, 30.0)
-    assert row["fired"]
+    assert (row["hypothesis"], row["expected"], row["t_isolated_s"]) == ("overshoot", "marker_lost", None)
+
+
+def test_what_comes_long_after_a_passing_fault_is_about_something_else(tmp_path):
+    events = [
+        (10.0, FaultEvent("led_off", True, "marker_lost")),
+        (20.0, FaultEvent("led_off", False)),
+        (621.0, weigh(0.1)),
+    ]
+    (row,) = run(tmp_path, [(0.0, 0.0, 0.0)], events)["faults"]
+    assert (row["t_detected_s"], row["hypothesis"]) == (None, None)
+
+
+def test_an_alarm_before_any_fault_is_a_false_one(tmp_path):
+    events = [
+        (4.0, weigh(0.1)),
+        (5.0, weigh(0.1)),
+        (7.0, weigh(0.9)),
+        (10.0, FaultEvent("led_off", True, "marker_lost")),
+        (13.0, weigh(0.1)),
+    ]
+    result = run(tmp_path, [(0.0, 0.0, 0.0)], events)
+    assert result["false_alarms"] == [{"t_s": 4.0, "hypothesis": "marker_lost"}]
 
 
 def test_steepest_true_attitude_is_the_tilt(tmp_path):
