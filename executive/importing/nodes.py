@@ -25,8 +25,8 @@ _SCRIPTS_AFTER = frozenset({"_onSuccess", "_onFailure", "_onHalted", "_post"})
 _LIKE = {"AsyncSequence": "sequence", "AsyncFallback": "selector"}
 _LEAVES = {"AlwaysSuccess": True, "AlwaysFailure": False}
 _NOTES = {
-    "ReactiveSequence": "a sequence without memory: every tick it starts anew at the first child",
-    "ReactiveFallback": "a selector without memory: every tick it starts anew at the first child",
+    "ReactiveSequence": "a sequence without memory: it starts anew at every tick",
+    "ReactiveFallback": "a selector without memory: it starts anew at every tick",
     "AsyncSequence": "a plain sequence: it does not wait for a tick between its children",
     "AsyncFallback": "a plain selector: it does not wait for a tick between its children",
     "_while": "`while` fails its node when it no longer holds, where BehaviorTree.CPP skips it",

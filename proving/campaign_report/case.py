@@ -76,7 +76,7 @@ class Case:
     @property
     def counts(self) -> bool:
         """Whether the case says anything of the system: not if it was the infrastructure, or never tested."""
-        broke = self.class_ == INFRASTRUCTURE or (self.outcome == LOST and self.class_ != "sut")
+        broke = self.class_ in (INFRASTRUCTURE, "refused") or (self.outcome == LOST and self.class_ != "sut")
         return not broke and self.outcome != "invalid"
 
     @cached_property

@@ -26,6 +26,7 @@ class Comparison:
 
     first: str
     second: str
+    key: str
     couples: tuple[tuple[Case, Case], ...]
     error_m: Estimate
     """Median over the pairs of the second's error at the end less the first's."""
@@ -38,15 +39,15 @@ class Comparison:
 def comparisons(campaign: Campaign) -> list[Comparison]:
     """Every further setting against the first."""
     first, *others = campaign.settings
-    return [_comparison(campaign, first, other) for other in others]
+    return [_comparison(campaign, first, other, f"compare-{n}") for n, other in enumerate(others, 1)]
 
 
-def _comparison(campaign: Campaign, first: str, second: str) -> Comparison:
+def _comparison(campaign: Campaign, first: str, second: str, key: str) -> Comparison:
     by_seed = {case.seed: case for case in campaign.of_setting(second)}
     couples = tuple((a, by_seed[a.seed]) for a in campaign.of_setting(first) if a.seed in by_seed)
     errors = [b - a for a, b in _errors_m(couples)]
     rng = generator(campaign.seed, f"report {first} {second}")
-    return Comparison(first, second, couples, median(errors, rng))
+    return Comparison(first, second, key, couples, median(errors, rng))
 
 
 def _errors_m(couples: tuple[tuple[Case, Case], ...]) -> list[tuple[float, float]]:
@@ -72,7 +73,7 @@ def compared(found: Comparison) -> Figure | None:
         "median."
     )
     title = f"{found.second} against {found.first}"
-    return Figure(f"compare-{found.second}", title, legend(words) + body, caption)
+    return Figure(found.key, title, legend(words) + body, caption)
 
 
 def _figures(found: Comparison) -> str:
@@ -107,7 +108,8 @@ def _p_text(p: float) -> str:
 
 
 def _signed(value_m: float) -> str:
-    return "–" if math.isnan(value_m) else f"{'+' if value_m >= 0 else '−'}{length(abs(value_m))}"
+    sign = "" if abs(value_m) < 5e-5 else "+" if value_m > 0 else "−"
+    return "–" if math.isnan(value_m) else f"{sign}{length(abs(value_m))}"
 
 
 def _interval(found: Estimate) -> str:

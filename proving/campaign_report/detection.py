@@ -10,7 +10,7 @@ from executive.report.figure import Figure
 from proving.campaign_report.case import FaultRow
 from proving.campaign_report.gather import Campaign
 
-_LEFT, _TOP, _CELL_W, _CELL_H, _WIDTH = 216.0, 104.0, 84.0, 30.0, 1100.0
+_LEFT, _TOP, _CELL_W, _CELL_H, _WIDTH = 216.0, 104.0, 104.0, 30.0, 1100.0
 UNDETECTED = "not detected"
 
 
@@ -40,10 +40,10 @@ def detection(campaign: Campaign) -> Figure | None:
     )
     words = [("area", "var(--s0)", "share of the row"), ("ring", "var(--ink)", "the expected diagnosis")]
     caption = (
-        "Each row is a kind of fault, counted once for every time it took effect; each column what the "
-        "in-situ classification concluded. The darker a cell, the larger its share of the row; the outlined "
-        "cell is the diagnosis that the fault should lead to. In a case with two faults the conclusion may "
-        "stem from the other one."
+        "Each row is a kind of fault, counted once for every time it took effect; each column what "
+        "the classification concluded. The stronger its colour, the larger a cell's share of the row; the "
+        "outlined cell is the diagnosis that the fault should lead to. In a case with two faults the "
+        "conclusion may stem from the other one."
     )
     return Figure("detection", "Detection: fault against diagnosis", legend(words) + drawn, caption)
 

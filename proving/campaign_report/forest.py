@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from html import escape
+
 from executive.report import svg
 from executive.report.axes import Scale, legend
 from executive.report.figure import Figure
@@ -30,7 +32,7 @@ def forest(campaign: Campaign) -> Figure | None:
     overall = success(campaign.cases).value
     body = [_axis(y), _mean(overall, y), *rows]
     drawn = svg.drawing(_WIDTH, y + 24, body, aria_label="Success by fault")
-    entries = [("dot", SERIES[n % 4], name) for n, name in enumerate(settings) if name]
+    entries = [("dot", SERIES[n % 4], escape(name)) for n, name in enumerate(settings) if name]
     entries += [
         ("solid", colour, words) for end, (words, colour) in ENDS.items() if end in ends(campaign.cases)
     ]

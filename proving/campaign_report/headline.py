@@ -15,6 +15,8 @@ from proving.campaign_report.gather import Campaign
 from proving.campaign_report.groups import success
 from proving.campaign_report.lengths import length
 
+_CLASSES = {INFRASTRUCTURE: "lost to the infrastructure", "sut": "broke the system under test"}
+
 
 def headline(campaign: Campaign) -> list[Tile]:
     """The three figures that matter most: safety, success, cases."""
@@ -60,7 +62,7 @@ def _classes(campaign: Campaign) -> str:
     """How many were lost, and to what."""
     classes = Counter(case.class_ for case in campaign.cases if case.class_)
     invalid = sum(case.outcome == "invalid" for case in campaign.cases)
-    parts = [f"{n} lost to the {'infrastructure' if c == INFRASTRUCTURE else c}" for c, n in classes.items()]
+    parts = [f"{n} {_CLASSES.get(name, name)}" for name, n in sorted(classes.items())]
     if invalid:
         parts.append(f"{invalid} invalid")
     planned = campaign.about.get("runs")

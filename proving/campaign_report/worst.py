@@ -10,7 +10,7 @@ from html import escape
 from executive.report.axes import legend
 from executive.report.figure import Figure, duration
 from executive.report.palette import BAD, ESTIMATE, TRUTH
-from proving.campaign_report.case import LOST, Case
+from proving.campaign_report.case import INFRASTRUCTURE, LOST, Case
 from proving.campaign_report.gather import Campaign
 from proving.campaign_report.groups import ENDS, end_of
 from proving.campaign_report.lengths import length
@@ -22,11 +22,12 @@ _PATH = re.compile(r"[\w#]+(?:/[\w#]+)+/([\w#]+)")
 
 
 def ranked(cases: Iterable[Case]) -> list[Case]:
-    """Worst first: broken safety, then the kind of end, then the true error at the end."""
+    """Worst first: broken safety, the kind of end, the true error at the end; the infrastructure's last."""
     return sorted(
         cases,
         key=lambda case: (
             not case.unsafe,
+            case.class_ == INFRASTRUCTURE,
             _ORDER.index(end_of(case)),
             -(case.truth("final_error_m") or 0.0),
             case.index,
