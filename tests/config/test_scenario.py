@@ -96,7 +96,8 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
         'scenarios/dark.yaml:6:17: got the unknown key "sun_elevaton", expected sun_elevation; '
         'did you mean "sun_elevation"?',
         "scenarios/dark.yaml:6:53: got 30 without a unit, expected a length such as '30 mm'",
-        f'scenarios/dark.yaml:8:5: got the unknown fault "lamp_of", expected {faults}; did you mean "lamp_off"?',
+        f'scenarios/dark.yaml:8:5: got the unknown fault "lamp_of", expected {faults}; '
+        'did you mean "lamp_off"?',
         "scenarios/dark.yaml:9:24: got 7, expected less than or equal to 3",
         "scenarios/dark.yaml:10:18: got '3 m' (a length), expected a duration such as '36 s'",
         'scenarios/dark.yaml:11:19: got "reachd", expected reached, safe_hold, help, time_limit or error; '
