@@ -104,7 +104,7 @@ def test_what_is_wrong_is_told_with_its_place(text, offset, message):
     st.text(alphabet="xy()[]<>=-+*/, 01s.", max_size=30)
     | st.lists(
         st.sampled_from(
-            "always eventually until not and or implies -> ( ) [0s,1s] x y < > 0 1 min , s".split()
+            ["always", "eventually", "until", "not", "and", "or", "implies", "->", "(", ")", "[0s,1s]", "x", "y", "<", ">", "0", "1", "min", ",", "s"]
         ),
         max_size=14,
     ).map(" ".join)
