@@ -6,11 +6,6 @@ from collections import Counter
 from dataclasses import dataclass
 
 from executive.report.tables import Table
-<<<<<<< HEAD
-from executive.telemetry import History
-from executive.telemetry.evidence import episodes
-=======
->>>>>>> campaignreport
 from proving.campaign_report.case import Case
 from proving.campaign_report.gather import Campaign
 
@@ -32,25 +27,6 @@ class Alarms:
 
 
 def alarms(campaign: Campaign) -> Alarms:
-<<<<<<< HEAD
-    """Read the records of the cases without a fault. An alarm begins when the nominal ceases to lead."""
-    quiet = [case for case in campaign.counted if not case.faults]
-    found = {case.index: _alarms(case) for case in quiet}
-    hours = sum(float(case.result.get("mission_s") or 0.0) for case in quiet) / 3600
-    strategies = Counter(str(row["name"]) for case in quiet for row in case.result.get("strategies") or [])
-    total: Counter[str] = Counter()
-    for counted in found.values():
-        total.update(counted)
-    return Alarms(len(quiet), hours, tuple(i for i, c in found.items() if c), total, strategies)
-
-
-def _alarms(case: Case) -> Counter[str]:
-    """The hypotheses that took over from the nominal one, one count each time."""
-    try:
-        return Counter(at.event for at in episodes(History.of(case.folder / "record.mcap")))
-    except RecordError:
-        return Counter()
-=======
     """Add up the alarms that `result.json` tells of as ones that no fault can have caused."""
     cases = campaign.counted
     found = {case.index: [str(row["hypothesis"]) for row in _rows(case)] for case in cases}
@@ -62,7 +38,6 @@ def _alarms(case: Case) -> Counter[str]:
         hypotheses=Counter(name for names in found.values() for name in names),
         strategies=Counter(name for case in cases for name in _tried(case)),
     )
->>>>>>> campaignreport
 
 
 def _rows(case: Case) -> list[dict[str, object]]:
