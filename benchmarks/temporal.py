@@ -85,6 +85,7 @@ def main() -> None:
         theirs: Callable[[str, int, Array, Array], float | None] = lambda *case: None  # noqa: E731
     else:
         theirs = within_patience(rtamts_s, chosen.patience)
+    ours_s(FORMULAS[0], 1, *signals(1))  # the first to speak of seconds waits for the table of units
     print(f"{'formula':66} {'samples':>8} {'window':>7} {'ours [s]':>9} {'rtamt [s]':>10}")
     for template in FORMULAS:
         for window in chosen.windows:
@@ -92,9 +93,8 @@ def main() -> None:
                 x, y = signals(samples)
                 mine, other = ours_s(template, window, x, y), theirs(template, window, x, y)
                 text = template.format(u=" s", sep=", ", window=window)
-                print(
-                    f"{text:66} {samples:8} {window:7} {mine:9.3f} {'-' if other is None else f'{other:.2f}':>10}"
-                )
+                shown = "-" if other is None else f"{other:.2f}"
+                print(f"{text:66} {samples:8} {window:7} {mine:9.3f} {shown:>10}", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,13 @@
+import re
+from pathlib import Path
+
 import pytest
 import yaml
 
 from executive.errors import ConfigError
+from executive.hypotheses import Hypothesis
 from executive.scenario import resolve_scenario
+from executive.signals import SIGNALS
 
 
 def resolved(folder, expect, more=""):
@@ -92,3 +97,22 @@ def test_an_unknown_hypothesis_is_told_with_a_guess(folder):
 def test_every_complaint_about_expectations_comes_at_once(folder):
     expect = "  outcome: reachd\n  always: tilt\n  diagnosed: {fault: a, as: b}\n  strategies_tried: c\n"
     assert [line.split(":")[1] for line in problems(folder, expect)] == ["11", "12", "13", "13", "14"]
+
+
+MANUAL = Path(__file__).parents[2] / "docs" / "expectations.md"
+
+
+def test_what_the_manual_shows_can_be_expected(folder):
+    (shown,) = re.findall(r"```yaml\nexpect:\n(.*?)```", MANUAL.read_text(), re.DOTALL)
+    path = folder / "scenarios" / "dark.yaml"
+    path.write_text(path.read_text().replace("{marker: 2}\n", "{marker: 2}\n    name: led_off\n"))
+    expect = resolved(folder, shown).expect
+    assert all(value not in (None, ()) for value in expect.model_dump().values())
+
+
+def test_the_manual_names_every_signal():
+    named = set(
+        re.findall(r"`(\w+)`", MANUAL.read_text().split("| signal | of |")[1].split("### Exactly")[0])
+    )
+    assert set(SIGNALS) - named <= {str(h) for h in Hypothesis}
+    assert named <= set(SIGNALS)
