@@ -94,7 +94,14 @@ def resolve_scenario(
     ConfigError with every problem found; PluginError when the backend named cannot be loaded.
     """
     path = Path(path)
-    source = as_scenario(read(path, shown(path)))
+    return resolve_source(read(path, shown(path)), seed, tier, overrides)
+
+
+def resolve_source(
+    source: Source, seed: int | None = None, tier: str | None = None, overrides: Sequence[str] = ()
+) -> ResolvedScenario:
+    """The same from a file already read, or from a part of one."""
+    source = as_scenario(source)
     for number, text in enumerate(overrides, 1):
         source = override(source, text, number)
     source = _with_value(source, "seed", seed)
@@ -265,11 +272,13 @@ def _unknown_nodes(source: Source, faults: tuple[ResolvedFault, ...], tree: Tree
 
 
 def _unknown_targets(source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec) -> list[Problem]:
-    """Faults of a node or a strategy that is not there."""
+    """Faults of a node, a value or a strategy that is not there."""
     nodes: list[tuple[Place, str]] = []
+    values: list[tuple[Place, str]] = []
     strategies: list[tuple[Place, str]] = []
     for i, fault in enumerate(faults):
-        for parameter, found in ((fault.spec.node, nodes), (fault.spec.strategy, strategies)):
+        named = ((fault.spec.node, nodes), (fault.spec.value, values), (fault.spec.strategy, strategies))
+        for parameter, found in named:
             value = getattr(fault.parameters, parameter) if parameter else None
             if parameter and value is not None:
                 found.append((("faults", i, fault.spec.name, parameter), value))
@@ -277,6 +286,9 @@ def _unknown_targets(source: Source, faults: tuple[ResolvedFault, ...], tree: Tr
     return [
         *_strangers(
             source, nodes, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
+        ),
+        *_strangers(
+            source, values, _value_names(tree), f"the value {{}}, which the tree {tree.name} does not have"
         ),
         *_strangers(source, strategies, known, "the unknown strategy {}"),
     ]
@@ -286,6 +298,13 @@ def _node_names(tree: TreeSpec) -> set[str]:
     """What the nodes of a tree and of every strategy's tree are called."""
     trees = (tree, *strategy_trees(load_strategies()).values())
     return {node.name for each in trees for _, node in walk(each)}
+
+
+def _value_names(tree: TreeSpec) -> set[str]:
+    """What the values of a tree and of all its sub-trees are called, and of every strategy's."""
+    trees = (tree, *strategy_trees(load_strategies()).values())
+    inner = (node.tree for each in trees for _, node in walk(each) if node.tree is not None)
+    return {name for each in (*trees, *inner) for name in each.values}
 
 
 def _strangers(source: Source, named: list[tuple[Place, str]], known: set[str], got: str) -> list[Problem]:

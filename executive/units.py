@@ -196,7 +196,14 @@ def of_kind(kind: Kind) -> Any:
     return (
         BeforeValidator(read),
         PlainSerializer(lambda value: written(value, kind.unit), return_type=str, when_used="json"),
-        WithJsonSchema({"type": "string", "description": articled(kind.name), "examples": [kind.example]}),
+        WithJsonSchema(
+            {
+                "type": "string",
+                "format": articled(kind.name),
+                "description": articled(kind.name),
+                "examples": [kind.example],
+            }
+        ),
     )
 
 
