@@ -8,6 +8,9 @@ from executive.temporal import names, parse_formula
 from executive.temporal.formula import Always, And, Bounds, Eventually, Implies, Not, Or, Until
 from tests.temporal.random_formulas import TYPES, formula
 
+WORDS = ["always", "eventually", "until", "not", "and", "or", "implies", "->", "(", ")", "[0 s, 1 s]"]
+WORDS += ["x", "y", "<", ">", "0", "1", "min", ",", "s"]
+
 
 @pytest.mark.parametrize(
     ("text", "same"),
@@ -103,9 +106,7 @@ def test_what_is_wrong_is_told_with_its_place(text, offset, message):
 @given(
     st.text(alphabet="xy()[]<>=-+*/, 01s.", max_size=30)
     | st.lists(
-        st.sampled_from(
-            ["always", "eventually", "until", "not", "and", "or", "implies", "->", "(", ")", "[0s,1s]", "x", "y", "<", ">", "0", "1", "min", ",", "s"]
-        ),
+        st.sampled_from(WORDS),
         max_size=14,
     ).map(" ".join)
 )

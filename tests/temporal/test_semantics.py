@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from executive.chance import generator
+from executive.clock import Stopwatch
 from executive.temporal import judge, on_one_grid, parse_formula
 from executive.temporal.semantics import Decisions, Margins, evaluate
 from executive.temporal.trace import Trace
@@ -173,3 +174,13 @@ def test_what_was_never_put_to_the_test_is_warned_of(text, warning):
 def test_of_samples_at_one_time_the_last_counts():
     trace = on_one_grid({"x": (np.array([0.0, 1.0, 1.0]), np.array([1.0, -1.0, 2.0]))}, 1.0)
     assert judge(parse_formula("always x > 0", KINDS), trace).met
+
+
+@pytest.mark.parametrize("window_s", [100, 5000])
+def test_a_timed_until_over_50000_samples_takes_under_a_second(window_s):
+    times_s, (x, y) = np.arange(50_000.0), generator(1, "long").normal(size=(2, 50_000))
+    trace = on_one_grid({"x": (times_s, x), "y": (times_s, y)}, times_s[-1])
+    parsed = parse_formula(f"always (x > -9 until[0 s, {window_s} s] y > 2)", TYPES)
+    watch = Stopwatch()
+    judge(parsed, trace)
+    assert watch.elapsed_s() < 1.0
