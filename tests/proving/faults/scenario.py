@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 from executive.app import Finished, RunOptions
 from executive.app import run as run_file
 from executive.cli import invoke
 from executive.telemetry import History, events
 from executive.telemetry.reader import is_complete
+from executive.testing import FakeBackend
 
 HEAD = {
     "scenario": "short",
@@ -32,6 +34,8 @@ class Done:
     """A run that is over."""
 
     finished: Finished
+    rested: bool
+    """Whether the robot stood still when it was released."""
 
     @property
     def outcome(self) -> str:
@@ -59,6 +63,7 @@ class Done:
         promises = {
             "the record is closed": is_complete(folder / "record.mcap"),
             "the record ends with a stop": stop is not None and stop.event.outcome == self.outcome,
+            "the rover rests": self.rested,
             "the drives are stopped": not drives or bool(stops and stops[-1] >= drives[-1]),
             "the result is of this run": result == self.finished.result,
             "a defect is told": (folder / "traceback.txt").is_file() == (self.outcome == "error"),
@@ -76,7 +81,10 @@ def write(folder: Path, *faults: dict[str, Any], **head: Any) -> Path:
 
 def run(folder: Path, *faults: dict[str, Any], **head: Any) -> Done:
     """Run the short mission with these faults."""
-    return Done(run_file(write(folder, *faults, **head), RunOptions(out=folder / "run", bar=False)))
+    moving: list[bool] = []
+    with patch.object(FakeBackend, "close", lambda backend: moving.append(backend.robot.moving)):
+        finished = run_file(write(folder, *faults, **head), RunOptions(out=folder / "run", bar=False))
+    return Done(finished, rested=moving == [False])
 
 
 def complaint(folder: Path, capsys: Any, *faults: dict[str, Any]) -> str:
