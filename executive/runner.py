@@ -100,7 +100,8 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
 
 def _ended(run: Run) -> RunEnd:
     if run.root.status is Status.SUCCESS:
-        return RunEnd("reached", None)
+        missed = run.journal.missed()
+        return RunEnd("safe_hold", missed) if missed else RunEnd("reached", None)
     failure = run.trace.last_failure
     reason = f"{failure[1].reason}: {failure[1].detail}" if failure else None
     call = run.journal.called
