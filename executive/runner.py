@@ -78,7 +78,8 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
     limit_ticks = run.services.clock.ticks_for(run.time_limit_s)
     sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
     while True:
-        now = run.services.classification.sense(run.services.devices)
+        with watch.measure("tick"):
+            now = run.services.classification.sense(run.services.devices)
         run.each_tick()
         with watch.measure("tick"):
             run.root.tick_once()
