@@ -79,7 +79,8 @@ class Source:
             self.get(place),
             {p[cut:]: mark for p, mark in self.values.items() if _within(p, place)},
             {p[cut:]: mark for p, mark in self.keys.items() if _within(p, place)},
-            {p[cut:]: folder for p, folder in self.folders.items() if _within(p, place)},
+            {(): self.folder(place)}
+            | {p[cut:]: folder for p, folder in self.folders.items() if _within(p, place)},
         )
 
     def graft(self, place: Place, other: Source) -> Source:
@@ -93,6 +94,19 @@ class Source:
             folders=_without(self.folders, place)
             | {place + p: folder for p, folder in other.folders.items()},
             problems=self.problems + other.problems,
+        )
+
+    def only_member(self, place: Place) -> Source:
+        """This source with the value at `place` as the only member of a list; it keeps its marks."""
+        member = self.part(place)
+        return self.graft(
+            place,
+            Source(
+                [member.data],
+                {(): self.at(place)} | {(0, *p): mark for p, mark in member.values.items()},
+                {(0, *p): mark for p, mark in member.keys.items() if p},
+                {(0, *p): folder for p, folder in member.folders.items()},
+            ),
         )
 
 

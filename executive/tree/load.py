@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ from executive.config.find import find, names, shown
 from executive.config.source import Mark, Place, Source, read, read_text
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
-from executive.errors import ConfigError
+from executive.errors import ConfigError, Problem
 from executive.expressions import GuardError
 from executive.guards import parse_guard
 from executive.nodes import LEAVES
@@ -38,17 +38,27 @@ def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf
     return _Trees(node_types(leaves)).read(read_text(text, name), ())
 
 
-class _Trees:
-    """One loading: every file is read once, however often it is used."""
+def check_trees(sources: Mapping[str, Source], skipped: Container[str] = ()) -> list[Problem]:
+    """Every problem of trees given by name, as if they were files that can use each other."""
+    trees, problems = _Trees(node_types(), sources), Problems()
+    for name in sources:
+        if name not in skipped:
+            problems.attempt(lambda n=name: trees.load(Path(n), ()))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+    return sorted(set(problems.found))
 
-    def __init__(self, types: Mapping[str, NodeType]) -> None:
-        self.types = types
+
+class _Trees:
+    """One loading: every file is read once, however often it is used. `given` trees need no file."""
+
+    def __init__(self, types: Mapping[str, NodeType], given: Mapping[str, Source] | None = None) -> None:
+        self.types, self.given = types, given or {}
         self.loaded: dict[Path, TreeSpec | ConfigError] = {}
 
     def load(self, path: Path, stack: tuple[Path, ...]) -> TreeSpec:
         if path not in self.loaded:
             try:
-                self.loaded[path] = self.read(read(path, shown(path)), (*stack, path))
+                source = self.given.get(str(path)) or read(path, shown(path))
+                self.loaded[path] = self.read(source, (*stack, path))
             except ConfigError as error:
                 self.loaded[path] = error
         result = self.loaded[path]
@@ -182,7 +192,8 @@ class _TreeReader:
 
     def _tree(self, word: str, mark: Mark) -> TreeSpec:
         try:
-            path = find("trees", word, self.source.folder(), mark)
+            given = word in self.trees.given
+            path = Path(word) if given else find("trees", word, self.source.folder(), mark)
         except ConfigError:
             known = [*self.trees.types, *names("trees")]
             message = f'got the unknown node "{word}", expected a node or a tree{guess(word, known)}'

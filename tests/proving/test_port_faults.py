@@ -8,7 +8,9 @@ from executive.faults import Cue
 from executive.rig import RigCalibration
 from executive.testing.fake import FakeBackend, FakeWorld
 from executive.types import Images, Outcome, Point, Reason, Segment, Shot, Window
-from proving.faults import EncoderScale, FrozenFrame, Nothing, Scale
+from proving.faults.cameras import FrozenFrame
+from proving.faults.parameters import Nothing
+from proving.faults.tracks import EncoderScale, Scale
 
 ROUTE = (Segment(Point(3.0, 0.0), Point(4.0, 0.0), 0.03, 0.25, 0.03),)
 SHOT = Shot((0, 1, 2, 4, 8))
