@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from executive.show import draw
 from executive.telemetry import History, events
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.result import RunFigures, summarise, write_result
+from executive.tree.load import Instead
 
 REACHED, OTHERWISE, DEFECT = 0, 1, 3
 
@@ -38,6 +39,10 @@ class RunOptions:
     tier: str | None = None
     overrides: Sequence[str] = ()
     bar: bool = True
+    report: bool = True
+    """Whether `report.html` is written; `longarm report` can do it later."""
+    instead: Instead = field(default_factory=dict)
+    """Texts that stand for tree files, by absolute path."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,8 @@ def run(file: Path, options: RunOptions) -> Finished:
     A defect ends the run, not the folder: record, result and report are complete and `traceback.txt` tells.
     """
     scenario = resolve_scenario(file, options.seed, options.tier, options.overrides)
+    if options.instead:
+        scenario = scenario.with_trees(options.instead)
     strategies = load_strategies()
     localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
     watch = Stopwatch()
@@ -72,7 +79,7 @@ def run(file: Path, options: RunOptions) -> Finished:
     if end.defect is not None:
         write_traceback(folder, end.defect)
     try:
-        return _conclude(scenario, folder, end, watch)
+        return _conclude(scenario, folder, end, watch, options.report)
     except Exception as defect:
         write_traceback(folder, defect)
         raise
@@ -121,7 +128,9 @@ def _execute(
     return end
 
 
-def _conclude(scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch) -> Finished:
+def _conclude(
+    scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch, with_report: bool
+) -> Finished:
     record, truth = folder / "record.mcap", folder / "truth.mcap"
     figures = RunFigures(
         wall_s=round(watch.elapsed_s(), 3),
@@ -131,7 +140,8 @@ def _conclude(scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stop
     result = summarise(record, truth, figures)
     result["expectations"] = judge(scenario.expect, result)
     write_result(folder / "result.json", result)
-    write_report(folder, _tree_svg(folder))
+    if with_report:
+        write_report(folder, _tree_svg(folder))
     return Finished(folder, json.loads((folder / "result.json").read_text()), _exit_code(end, result))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,15 +23,23 @@ from executive.tree.literals import port_value
 from executive.tree.spec import GUARDS, Literal, NodeSpec, PortValue, Reference, TreeSpec
 
 MAX_SIZE = 5000
+Instead = Mapping[Path, str]
+"""Texts that stand for tree files: what if a file said something else?"""
+AS_IT_IS: Instead = {}
 BESIDE = ("name", *GUARDS)
 CHILD_KEYS = {"none": (), "one": ("child",), "two": ("children",), "many": ("children",)}
 
 
-def load_tree(reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
-    """Load by path or bare name; ConfigError with every problem in the file and the trees it uses."""
+def load_tree(
+    reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES, instead: Instead = AS_IT_IS
+) -> TreeSpec:
+    """Load by path or bare name; ConfigError with every problem in the file and the trees it uses.
+
+    A file among `instead` (by its absolute path) is taken to hold the text given there.
+    """
     if isinstance(reference, str):
         reference = find("trees", reference, Path.cwd(), Mark(reference, 1, 1))
-    return _Trees(node_types(leaves)).load(reference.absolute(), ())
+    return _Trees(node_types(leaves), instead).load(reference.absolute(), ())
 
 
 def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
@@ -41,20 +50,25 @@ def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf
 class _Trees:
     """One loading: every file is read once, however often it is used."""
 
-    def __init__(self, types: Mapping[str, NodeType]) -> None:
-        self.types = types
+    def __init__(self, types: Mapping[str, NodeType], instead: Instead = AS_IT_IS) -> None:
+        self.types, self.instead = types, instead
         self.loaded: dict[Path, TreeSpec | ConfigError] = {}
 
     def load(self, path: Path, stack: tuple[Path, ...]) -> TreeSpec:
         if path not in self.loaded:
             try:
-                self.loaded[path] = self.read(read(path, shown(path)), (*stack, path))
+                self.loaded[path] = self.read(self.source(path), (*stack, path))
             except ConfigError as error:
                 self.loaded[path] = error
         result = self.loaded[path]
         if isinstance(result, ConfigError):
             raise result
         return result
+
+    def source(self, path: Path) -> Source:
+        if path not in self.instead:
+            return read(path, shown(path))
+        return replace(read_text(self.instead[path], shown(path)), folders={(): path.parent})
 
     def read(self, source: Source, stack: tuple[Path, ...]) -> TreeSpec:
         problems = Problems()

@@ -62,12 +62,20 @@ class Excuse(Strict):
         return not self.outcomes or item.word in self.outcomes
 
 
+class EquivalentMutant(Strict):
+    """Mutants, by a pattern of their names, that no scenario can tell from the original, and why."""
+
+    mutant: Word
+    because: Annotated[str, Field(min_length=10)]
+
+
 class CoverageFile(Strict):
-    """The file."""
+    """The file: what coverage shall not ask for, and what mutation shall not."""
 
     coverage: Word
     doc: str = ""
     cannot_happen: tuple[Excuse, ...] = ()
+    equivalent_mutants: tuple[EquivalentMutant, ...] = ()
 
 
 @dataclass(frozen=True)

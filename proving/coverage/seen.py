@@ -14,8 +14,8 @@ from executive.fault_entries import RESERVED
 from executive.fault_onsets import Sightings
 from executive.pool_plugins import load_strategies, strategy_trees
 from executive.telemetry import events
+from executive.telemetry.evidence import leading
 from executive.telemetry.history import History
-from executive.telemetry.result import leading
 from executive.tree.load import load_tree
 from executive.types import Call, Reason
 from proving.coverage.items import Item
@@ -47,7 +47,8 @@ class Seen:
             word = _word(change, before.get(change.path, ""), name in universe.leaves)
             before[change.path] = change.status
             if name is None:
-                self.strangers[change.path] += not _is_strategy(change.path, universe)
+                if not _is_strategy(change.path, universe):
+                    self.strangers[change.path] += 1
                 continue
             for said in word:
                 item = Item("node", name, said)

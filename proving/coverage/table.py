@@ -82,6 +82,5 @@ def _holes(coverage: Coverage) -> Iterator[str]:
 def _oddities(coverage: Coverage) -> Iterator[str]:
     for item, count in sorted(coverage.seen.undeclared.items()):
         yield f"not declared: {item.name} failed with {item.word}, {count} times"
-    strangers = +coverage.seen.strangers
-    if strangers:
+    if strangers := coverage.seen.strangers:
         yield f"not in the trees as they are now: {len(strangers)} nodes, such as {min(strangers)}"
