@@ -40,9 +40,9 @@ def test_a_case_that_is_no_scenario_is_refused_with_its_problems(tmp_path):
 def test_a_tree_file_can_be_taken_to_say_something_else(suite, tmp_path):
     path = Path(load_tree("find_rover").file).absolute()
     blind = (
-        "tree: find_rover\nports: {pose: {type: PoseEstimate, direction: inout}}\nroot: {always: {fail: 1}}\n"
+        "tree: find_rover\nports: {pose: {type: PoseEstimate, direction: inout}}\nroot: {oops: {}}\n"
     )
-    wrong, right = blind, blind.replace("{always: {fail: 1}}", "{force_failure: {take_picture: {}}}")
+    wrong, right = blind, blind.replace("{oops: {}}", "{force_failure: {take_picture: {}}}")
     ends = [
         *run_cases([Case("wrong", suite / "plain.yaml", tmp_path / "wrong", instead={path: wrong})], 1),
         *run_cases([Case("right", suite / "plain.yaml", tmp_path / "right", instead={path: right})], 1),
