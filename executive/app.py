@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from executive.backends import BackendRequest
 from executive.clock import Stopwatch
 from executive.errors import LongarmError, RecordError
 from executive.expectations import judge
+from executive.one_thread import one_thread
 from executive.pool import Strategy
 from executive.pool_plugins import load_strategies, strategy_trees
 from executive.progress import progress_bar
@@ -25,7 +26,6 @@ from executive.show import draw
 from executive.telemetry import History, events
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.result import RunFigures, summarise, write_result
-from executive.tree.load import Instead
 
 REACHED, OTHERWISE, DEFECT = 0, 1, 3
 
@@ -41,8 +41,6 @@ class RunOptions:
     bar: bool = True
     report: bool = True
     """Whether `report.html` is written; `longarm report` can do it later."""
-    instead: Instead = field(default_factory=dict)
-    """Texts that stand for tree files, by absolute path."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +50,7 @@ class Finished:
     folder: Path
     result: dict[str, Any]
     exit_code: int
+    defect: BaseException | None = None
 
 
 def run(file: Path, options: RunOptions) -> Finished:
@@ -59,9 +58,11 @@ def run(file: Path, options: RunOptions) -> Finished:
 
     A defect ends the run, not the folder: record, result and report are complete and `traceback.txt` tells.
     """
-    scenario = resolve_scenario(file, options.seed, options.tier, options.overrides)
-    if options.instead:
-        scenario = scenario.with_trees(options.instead)
+    return run_scenario(resolve_scenario(file, options.seed, options.tier, options.overrides), options)
+
+
+def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
+    """The same for a scenario already resolved; of the options, those that change it are without effect."""
     strategies = load_strategies()
     localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
     watch = Stopwatch()
@@ -72,7 +73,8 @@ def run(file: Path, options: RunOptions) -> Finished:
         (folder / stale).unlink(missing_ok=True)
     (folder / "scenario.yaml").write_text(scenario.dump())  # first, so that a run cut off can be repeated
     try:
-        end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
+        with one_thread():
+            end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
     except LongarmError:
         unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
         raise
@@ -142,7 +144,8 @@ def _conclude(
     write_result(folder / "result.json", result)
     if with_report:
         write_report(folder, _tree_svg(folder))
-    return Finished(folder, json.loads((folder / "result.json").read_text()), _exit_code(end, result))
+    kept = json.loads((folder / "result.json").read_text())
+    return Finished(folder, kept, _exit_code(end, result), end.defect)
 
 
 def _tree_svg(folder: Path) -> str | None:

@@ -11,9 +11,10 @@ from pathlib import Path
 
 import click
 
+from executive.command_group import CommandGroup
 from executive.errors import LongarmError
 
-NOT_YET = ("test", "campaign", "import", "explain", "replay", "minimise")
+NOT_YET = ("import", "explain", "minimise")
 DEFECT = 3
 
 
@@ -54,7 +55,7 @@ def _deepest(error: BaseException) -> str:
     return f"{Path(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno}"
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"]})
 def cli() -> None:
     """Longarm: a rover led by its lander's stereo head, run by a behaviour tree.
 
@@ -121,7 +122,7 @@ def report(run_dir: Path) -> int:
 @click.option("--format", "form", type=click.Choice(["text", "json", "sarif"]), default="text")
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
-    """Analyse trees, missions and scenarios without running them; print every problem.
+    """Analyse trees, missions, scenarios and campaigns without running them; print every problem.
 
     Example: longarm check trees/*.yaml missions/*.yaml --format sarif
     """
@@ -208,16 +209,19 @@ for _kind, _example in (
 
 
 @cli.command()
-@click.argument("kind", type=click.Choice(["tree", "mission", "scenario", "campaign"]))
+@click.argument("kind")
 def schema(kind: str) -> int:
-    """Print the JSON Schema of a kind of file, for editors.
+    """Print the JSON Schema of a kind of file, for editors: tree, mission, scenario or campaign.
 
     Example: longarm schema tree > tree.schema.json
     """
     from executive import schema as schemas
+    from executive.config.validate import guess, listed
 
-    if kind not in schemas.KINDS:
-        raise click.UsageError(f"the schema of a {kind} is not there yet")
+    if kind not in schemas.kinds():
+        raise click.UsageError(
+            f'got "{kind}", expected {listed(schemas.kinds())}{guess(kind, schemas.kinds())}'
+        )
     click.echo(json.dumps(schemas.schema(kind), indent=2, ensure_ascii=False))
     return 0
 

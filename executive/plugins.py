@@ -11,6 +11,7 @@ STRATEGIES = "longarm.strategies"
 LOCALIZERS = "longarm.localizers"
 FAULTS = "longarm.faults"
 COMMANDS = "longarm.commands"
+FILES = "longarm.files"
 
 
 def found(group: str) -> dict[str, EntryPoint]:

@@ -100,7 +100,14 @@ def resolve_scenario(
     ConfigError with every problem found; PluginError when the backend named cannot be loaded.
     """
     path = Path(path)
-    source = as_scenario(read(path, shown(path)))
+    return resolve_source(read(path, shown(path)), seed, tier, overrides)
+
+
+def resolve_source(
+    source: Source, seed: int | None = None, tier: str | None = None, overrides: Sequence[str] = ()
+) -> ResolvedScenario:
+    """The same from a file already read, or from a part of one."""
+    source = as_scenario(source)
     for number, text in enumerate(overrides, 1):
         source = override(source, text, number)
     source = _with_value(source, "seed", seed)

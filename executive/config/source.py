@@ -79,7 +79,8 @@ class Source:
             self.get(place),
             {p[cut:]: mark for p, mark in self.values.items() if _within(p, place)},
             {p[cut:]: mark for p, mark in self.keys.items() if _within(p, place)},
-            {p[cut:]: folder for p, folder in self.folders.items() if _within(p, place)},
+            {(): self.folder(place)}
+            | {p[cut:]: folder for p, folder in self.folders.items() if _within(p, place)},
         )
 
     def graft(self, place: Place, other: Source) -> Source:
