@@ -6,17 +6,20 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from typing import Generic, TypeVar
 
-from proving.coverage.run import Case, Ended, run_cases
+from proving.engine import Case, Ending, run_cases
 
 T = TypeVar("T")
-Trial = Generator[Case, Ended, T]
+Trial = Generator[Case, Ending, T]
 """Yields a case, is sent its end, and so on; returns what it found out."""
 
-Run = Callable[[Iterable[Case], int], Iterator[Ended]]
+Run = Callable[[Iterable[Case], int], Iterator[Ending]]
 
 
 def conduct(trials: Iterable[Trial[T]], slots: int, run: Run = run_cases) -> Iterator[T]:
-    """What each trial found out, in the order in which they come to an end. Keys of cases must differ."""
+    """What each trial found out, in the order in which they come to an end. Keys of cases must differ.
+
+    `trials` is asked anew after each end, so that an iterator may have none now and some later.
+    """
     desk: _Desk[T] = _Desk(trials)
     ends = run(desk, slots)
     try:
@@ -48,10 +51,10 @@ class _Desk(Generic[T]):
         self.under_way[case.key] = trial
         return case
 
-    def tell(self, ended: Ended) -> None:
+    def tell(self, ended: Ending) -> None:
         self.advance(self.under_way.pop(ended.case.key), ended)
 
-    def advance(self, trial: Trial[T], ended: Ended | None) -> None:
+    def advance(self, trial: Trial[T], ended: Ending | None) -> None:
         """Let a trial go on to its next case, or to its end."""
         try:
             case = next(trial) if ended is None else trial.send(ended)

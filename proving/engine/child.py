@@ -9,6 +9,7 @@ import resource
 import sys
 import traceback
 from collections.abc import Iterator
+from pathlib import Path
 
 from executive import app
 from executive.config.find import shown
@@ -39,6 +40,8 @@ def run(case: Case) -> int:
 def _run(case: Case) -> int:
     source = read(case.file, shown(case.file))
     scenario = resolve_source(source.part(case.part), case.seed, case.tier, case.overrides)
+    if case.instead:
+        scenario = scenario.with_trees({Path(file): text for file, text in case.instead.items()})
     finished = app.run_scenario(scenario, app.RunOptions(out=case.folder, bar=False, report=False))
     return DONE if finished.defect is None else _blame(finished.defect)
 

@@ -19,7 +19,7 @@ from executive.nodes.base import PortSpec
 from executive.pool import Strategy
 from executive.pool_plugins import strategy_trees
 from executive.tree.catalogue import NodeType, node_types
-from executive.tree.load import Instead, load_tree
+from executive.tree.load import load_tree
 from executive.tree.spec import NodeSpec, TreeSpec, walk
 from proving.coverage.universe import Universe
 from proving.mutation.operators import ABSENT, OPERATORS, Change, Scene, defaults
@@ -42,8 +42,9 @@ class Mutant:
         return f"{self.node}: {self.what}"
 
     @property
-    def instead(self) -> Instead:
-        return {self.file: self.after}
+    def instead(self) -> dict[str, str]:
+        """The text that stands for the file, as a case has it."""
+        return {str(self.file): self.after}
 
     def diff(self) -> str:
         """The change as a unified diff of the file's data."""
@@ -95,7 +96,7 @@ def _stranger(name: str, known: list[str]) -> Problem:
 def _loads(mutant: Mutant) -> bool:
     """Whether the changed file passes the checks of a tree; who uses it sees the same ports as before."""
     try:
-        load_tree(mutant.file, instead=mutant.instead)
+        load_tree(mutant.file, instead={mutant.file: mutant.after})
     except ConfigError:
         return False
     return True

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from executive.chance import generator
 from executive.clock import Stopwatch
 from executive.pool_plugins import load_strategies
-from proving.coverage.suite import scenario_files
-from proving.coverage.trials import conduct
+from executive.scenario import resolve_scenario
+from proving.coverage.trials import Trial, conduct
 from proving.mutation.equivalents import Equivalents
 from proving.mutation.mutants import Forest, Mutant
 from proving.mutation.trial import Baseline, Court, Found
+from proving.suite.collect import Collected, collect
 
 
 @dataclass(frozen=True)
@@ -68,23 +69,52 @@ def mutate(
     `tell` hears of each baseline and each mutant as it ends, with how many there are. ConfigError for a bad
     tree or scenario.
     """
-    files = scenario_files(paths)
+    collected = [_as_run(each, options) for each in collect(paths)]
     forest = Forest.of(tree, load_strategies())
     mutants = chosen(forest, options)
     watch = Stopwatch()
     with TemporaryDirectory(prefix="mutants-") as folder:
         court = Court(Path(folder), options.tier, options.overrides, forest.universe)
-        suite = []
-        for baseline in conduct((court.baseline(file) for file in files), options.slots):
-            suite.append(baseline)
-            tell(baseline, len(files))
-        suite.sort(key=lambda b: files.index(b.file))
-        found = {}
-        for one in conduct((court.trial(mutant, suite) for mutant in mutants), options.slots):
-            found[one.mutant] = one
-            tell(one, len(mutants))
-    in_order = tuple(found[mutant] for mutant in mutants)
-    return Score(tuple(suite), in_order, equivalents.of(mutants), watch.elapsed_s())
+        docket = _Docket(court, collected, mutants)
+        for news in conduct(docket, options.slots):
+            docket.hear(news)
+            tell(news, len(collected) if isinstance(news, Baseline) else len(mutants))
+    found = tuple(docket.found[mutant] for mutant in mutants)
+    return Score(docket.suite, found, equivalents.of(mutants), watch.elapsed_s())
+
+
+class _Docket(Iterator[Trial[Baseline | Found]]):
+    """What is tried next: the tree as it is in every scenario, and when all of that is known, the mutants."""
+
+    def __init__(self, court: Court, collected: Sequence[Collected], mutants: Sequence[Mutant]) -> None:
+        self.court, self.collected = court, collected
+        self.baselines, self.mutants = iter(collected), iter(mutants)
+        self.heard: dict[Path, Baseline] = {}
+        self.found: dict[Mutant, Found] = {}
+
+    @property
+    def suite(self) -> tuple[Baseline, ...]:
+        """The baselines in the order of the suite."""
+        return tuple(self.heard[each.file] for each in self.collected)
+
+    def __next__(self) -> Trial[Baseline | Found]:
+        for each in self.baselines:
+            return self.court.baseline(each)
+        if len(self.heard) < len(self.collected):
+            raise StopIteration  # for now
+        return self.court.trial(next(self.mutants), self.suite)
+
+    def hear(self, news: Baseline | Found) -> None:
+        if isinstance(news, Baseline):
+            self.heard[news.file] = news
+        else:
+            self.found[news.mutant] = news
+
+
+def _as_run(collected: Collected, options: MutationOptions) -> Collected:
+    """With the tier and the values that the options replace; ConfigError where they do not fit."""
+    scenario = resolve_scenario(collected.file, None, options.tier, options.overrides)
+    return replace(collected, scenario=scenario)
 
 
 def chosen(forest: Forest, options: MutationOptions) -> list[Mutant]:

@@ -24,7 +24,7 @@ def as_data(score: Score) -> dict[str, Any]:
         "wall_s": round(score.wall_s, 3),
         "mutants_per_hour": round(score.per_hour, 1),
         "baselines": [
-            {"file": str(b.file), "passed": b.verdict.passed, "missed": b.verdict.missed}
+            {"file": str(b.file), "verdict": str(b.account.verdict.word), "missed": b.account.missed}
             for b in score.baselines
         ],
         "mutants": [_mutant(found, score) for found in score.found],
@@ -79,5 +79,5 @@ def _summary(score: Score) -> Iterator[str]:
     yield from _by("tree", score, lambda found: found.mutant.file.stem)
     for baseline in score.baselines:
         kills = sum(f.killer == baseline.file for f in score.found)
-        note = "" if baseline.verdict.passed else f"  (does not pass: {baseline.verdict.outcome})"
+        note = "" if baseline.passed else f"  ({baseline.account.verdict.word} as it is)"
         yield f"  {baseline.file} noticed {kills}{note}"

@@ -20,7 +20,7 @@ class Telling:
     def __call__(self, news: Baseline | Found, total: int) -> None:
         if isinstance(news, Baseline):
             self.baselines += 1
-            text = f"as it is: {news.file} {'passes' if news.verdict.passed else 'does not pass'}"
+            text = f"as it is: {news.file} {news.account.verdict.word}"
             self.say(self.baselines, total, text)
         else:
             self.mutants += 1

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count
 from pathlib import Path
 from shutil import rmtree
 
 from executive.telemetry.history import History
-from proving.coverage.run import Case
 from proving.coverage.seen import Seen
-from proving.coverage.suite import Verdict, verdict_of
 from proving.coverage.trials import Trial
 from proving.coverage.universe import Universe
+from proving.engine import Case, Ending, Limits
+from proving.mutation.account import Account, account
 from proving.mutation.mutants import Mutant
+from proving.suite.collect import Collected
+from proving.verdict import Terms
 
 SLOWER, GRACE_S = 3.0, 1800.0
 """A mutant may take this many times the mission time of the original, and this much more."""
@@ -26,14 +28,27 @@ WALL_SLOWER, WALL_GRACE_S = 10.0, 60.0
 class Baseline:
     """A scenario as it runs on the tree as it is; `reached` are the nodes that were ticked."""
 
-    file: Path
-    verdict: Verdict
+    collected: Collected
+    account: Account
     reached: frozenset[str]
-    mission_s: float
     wall_s: float
+
+    @property
+    def file(self) -> Path:
+        return self.collected.file
+
+    @property
+    def passed(self) -> bool:
+        return self.account.verdict.good
 
     def reaches(self, node: str) -> bool:
         return any(name == node or name.startswith(f"{node}/") for name in self.reached)
+
+    def limits(self) -> tuple[float, Limits]:
+        """Mission and wall time that a mutant may take [s]."""
+        mission_s = SLOWER * float(self.account.behaviour["mission_s"]) + GRACE_S
+        limit_s = min(mission_s, self.collected.scenario.time_limit_s)
+        return limit_s, Limits(wall_s=WALL_SLOWER * self.wall_s + WALL_GRACE_S)
 
 
 @dataclass(frozen=True)
@@ -62,54 +77,50 @@ class Court:
     total: Counter[Path] = field(default_factory=Counter)
     numbers: Iterator[int] = field(default_factory=count)
 
-    def baseline(self, file: Path) -> Trial[Baseline]:
+    def baseline(self, collected: Collected) -> Trial[Baseline]:
         """The scenario on the tree as it is."""
-        case = self.case(file)
-        ended = yield case
-        seen = Seen()
-        if ended.result is not None:
-            seen.add(str(file), History.of(case.folder / "record.mcap"), self.universe)
-        rmtree(case.folder, ignore_errors=True)
+        ending = yield self.case(collected)
+        record, seen = ending.case.folder / "record.mcap", Seen()
+        seen.add(collected.name, History.of(record) if record.is_file() else History.empty(), self.universe)
         reached = frozenset(item.name for item in seen.count if item.kind == "node")
-        told = ended.result or {"mission_s": 0.0, "wall_s": 0.0}
-        return Baseline(file, verdict_of(ended), reached, told["mission_s"], told["wall_s"])
+        return Baseline(collected, self.close(ending, collected), reached, ending.wall_s)
 
     def trial(self, mutant: Mutant, suite: Sequence[Baseline]) -> Trial[Found]:
         """The scenarios that reach the changed node, the likeliest to notice first, until one does."""
-        reaching = [b for b in suite if b.reaches(mutant.node)]
-        changed = False
-        for number in range(len(reaching)):
+        reaching, changed, runs = [b for b in suite if b.reaches(mutant.node)], False, 0
+        while reaching:
             baseline = min(reaching, key=lambda b: self.rank(b, mutant))
             reaching.remove(baseline)
-            case = self.case(baseline.file, mutant, baseline)
-            ended = yield case
-            rmtree(case.folder, ignore_errors=True)
-            verdict = verdict_of(ended)
-            why = verdict.worse_than(baseline.verdict)
+            runs += 1
+            ending = yield self.case(baseline.collected, mutant, baseline)
+            after = self.close(ending, baseline.collected)
+            why = after.lost(baseline.account)
             if why is not None:
                 self.kills[mutant.file, baseline.file] += 1
                 self.total[baseline.file] += 1
-                return Found(mutant, baseline.file, why, number + 1, True)
-            changed = changed or verdict.behaviour != baseline.verdict.behaviour
-        runs = sum(b.reaches(mutant.node) for b in suite)
-        return Found(mutant, None, "no scenario reaches it" if not runs else "", runs, changed)
+                return Found(mutant, baseline.file, why, runs, True)
+            changed = changed or after.behaviour != baseline.account.behaviour
+        return Found(mutant, None, "" if runs else "no scenario reaches it", runs, changed)
+
+    def close(self, ending: Ending, collected: Collected) -> Account:
+        """The account of a case, whose folder goes."""
+        told = account(ending, Terms.of(collected.scenario))
+        rmtree(ending.case.folder, ignore_errors=True)
+        return told
 
     def rank(self, baseline: Baseline, mutant: Mutant) -> tuple[float, ...]:
         kills, total = self.kills[mutant.file, baseline.file], self.total[baseline.file]
         return (-kills, -total, baseline.wall_s)
 
-    def case(self, file: Path, mutant: Mutant | None = None, baseline: Baseline | None = None) -> Case:
+    def case(
+        self, collected: Collected, mutant: Mutant | None = None, baseline: Baseline | None = None
+    ) -> Case:
         key = str(next(self.numbers))
-        made = Case(key, file, self.folder / key, tier=self.tier, overrides=self.overrides)
-        if mutant is None or baseline is None:
-            return made
-        limit_s = SLOWER * baseline.mission_s + GRACE_S
-        return Case(
-            key,
-            file,
-            self.folder / key,
-            tier=self.tier,
-            overrides=(*self.overrides, f"time_limit={limit_s:.0f} s"),
-            instead=mutant.instead,
-            wall_s=WALL_SLOWER * baseline.wall_s + WALL_GRACE_S,
+        case = Case(
+            key, collected.file.absolute(), self.folder / key, tier=self.tier, overrides=self.overrides
         )
+        if mutant is None or baseline is None:
+            return case
+        mission_s, limits = baseline.limits()
+        overrides = (*self.overrides, f"time_limit={mission_s:.0f} s")
+        return replace(case, overrides=overrides, limits=limits, instead=mutant.instead)
