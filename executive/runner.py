@@ -13,6 +13,7 @@ from executive.clock import Stopwatch
 from executive.errors import NodeRaised
 from executive.journal import RunJournal
 from executive.nodes.base import Leaf, Trace
+from executive.nodes.decorators import Guarded
 from executive.nodes.services import Services
 from executive.ports import Backend
 from executive.telemetry import events
@@ -181,7 +182,7 @@ class _Changes:
 
     def _event(self, path: str, status: Status) -> events.NodeChange:
         outcome = self._outcomes.get(path)
-        if outcome is None or not isinstance(self._run.paths[path], Leaf):
+        if outcome is None or not isinstance(self._run.paths[path], Leaf | Guarded):
             return events.NodeChange(path, status.value.lower())
         reason = "" if outcome.reason is Reason.DONE else str(outcome.reason)
         return events.NodeChange(path, status.value.lower(), reason, outcome.detail)
