@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from pathlib import Path
@@ -27,7 +28,8 @@ class Case:
     """A scenario file as `longarm run` takes it, and the folder that the run is written into.
 
     `text`, where given, is the scenario itself, and `file` only what messages call it; `overrides` are texts
-    `key=value` as with `--set`. `key` tells the cases of one batch apart.
+    `key=value` as with `--set`. `instead` gives texts that stand for tree files, by absolute path. `key`
+    tells the cases of one batch apart.
     """
 
     key: str
@@ -37,6 +39,7 @@ class Case:
     seed: int | None = None
     tier: str | None = None
     overrides: tuple[str, ...] = ()
+    instead: Mapping[str, str] = field(default_factory=dict)
     limits: Limits = field(default_factory=Limits)
 
     def to_json(self) -> dict[str, Any]:

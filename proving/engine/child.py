@@ -9,6 +9,7 @@ import resource
 import sys
 import traceback
 from collections.abc import Iterator
+from pathlib import Path
 
 from executive import app
 from executive.config.find import shown
@@ -40,6 +41,8 @@ def _run(case: Case) -> int:
     name = shown(case.file)
     source = read(case.file, name) if case.text is None else read_text(case.text, name)
     scenario = resolve_source(source, case.seed, case.tier, case.overrides)
+    if case.instead:
+        scenario = scenario.with_trees({Path(file): text for file, text in case.instead.items()})
     finished = app.run_scenario(scenario, app.RunOptions(out=case.folder, bar=False, report=False))
     return DONE if finished.defect is None else _blame(finished.defect)
 
