@@ -14,7 +14,7 @@ import click
 from executive.command_group import CommandGroup
 from executive.errors import LongarmError
 
-NOT_YET = ("campaign", "replay", "minimise")
+NOT_YET = ("minimise",)
 DEFECT = 3
 
 
