@@ -1,4 +1,4 @@
-"""pytest collects scenario files: `pytest scenarios/`, `-n 2` with pytest-xdist; verdicts as of `longarm test`.
+"""pytest collects scenario files: `pytest scenarios/`, also with `-n 2`; verdicts as of `longarm test`.
 
 Only YAML files with `scenario:` at the top are taken, and only those named as arguments or lying in a folder
 that the ini option `longarm_scenarios` names, so that other people's YAML is left alone.
