@@ -14,7 +14,7 @@ import click
 from executive.command_group import CommandGroup
 from executive.errors import LongarmError
 
-NOT_YET = ("import", "explain", "minimise")
+NOT_YET = ("campaign", "replay", "minimise")
 DEFECT = 3
 
 
@@ -105,15 +105,34 @@ def run(
 
 
 @cli.command()
-@click.argument("run_dir", type=FILE)
-def report(run_dir: Path) -> int:
-    """Write the self-contained report.html of a run folder anew, from its record.
+@click.argument("folder", type=FILE)
+def report(folder: Path) -> int:
+    """Write the self-contained report.html of a run or campaign folder anew, from its record.
 
     Example: longarm report runs/first_traverse-7
     """
     from executive import app
 
-    click.echo(app.report(run_dir))
+    click.echo(app.report(folder))
+    return 0
+
+
+@cli.command()
+@click.argument("run_dir", type=FILE)
+@click.option("--at", metavar="TIME", help="Mission time such as '12 min' or 720; the end by default.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def explain(run_dir: Path, at: str | None, as_json: bool) -> int:
+    """Say why: the chain from leaf to root, hypotheses with weights, what was tried and why that.
+
+    Example: longarm explain runs/marker_out-7 --at "20 min"
+    """
+    from executive import explain as explaining
+
+    found = explaining.explain(run_dir, at)
+    if as_json:
+        click.echo(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
+    else:
+        click.echo(explaining.as_text(found), nl=False)
     return 0
 
 
@@ -170,6 +189,25 @@ def show(tree: str, form: str, output: Path | None) -> int:
         output.write_bytes(content)
     else:
         click.echo(content, nl=False)
+    return 0
+
+
+@cli.command("import")
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, default=Path("trees"), show_default=True, help="Where to write.")
+@click.option("--force", is_flag=True, help="Replace files that are there already.")
+def import_(file: Path, output: Path, force: bool) -> int:
+    """Turn BehaviorTree.CPP v4 XML into tree files, one a tree; what reads a little differently is told.
+
+    Example: longarm import mission.xml -o trees
+    """
+    from executive import importing
+
+    imported = importing.import_file(file)
+    for path in importing.write_trees(imported.trees, output, force):
+        click.echo(path)
+    for note in imported.notes:
+        click.echo(f"{note.file}:{note.line}:{note.column}: note: {note.message}", err=True)
     return 0
 
 

@@ -75,7 +75,7 @@ class FaultSchedule:
     def wrap_pool(self, strategies: tuple[Strategy, ...]) -> tuple[Strategy, ...]:
         """The strategies that are found with these faults."""
         for injection in self._injections:
-            strategies = injection.fault.wrap_pool(strategies)
+            strategies = injection.fault.wrap_pool(strategies, injection.cue)
         return strategies
 
     def wrap_tree(self, tree: TreeParts) -> None:

@@ -14,6 +14,8 @@ LOCALIZERS = "longarm.localizers"
 FAULTS = "longarm.faults"
 COMMANDS = "longarm.commands"
 FILES = "longarm.files"
+REPORTERS = "longarm.reporters"
+"""By the file that marks a folder (`campaign` for campaign.json): folder → path of the report written."""
 
 
 def found(group: str) -> dict[str, EntryPoint]:

@@ -6,6 +6,8 @@ import copy
 from enum import Enum
 from typing import Any
 
+from executive import fault_schema
+from executive.config.expect import LISTS
 from executive.config.models import MissionFile, ScenarioFile
 from executive.file_kinds import file_kind, file_kinds
 from executive.nodes.base import REQUIRED, Direction, PortSpec
@@ -39,6 +41,11 @@ def _scenario() -> dict[str, Any]:
     inline = copy.deepcopy(made["properties"]["mission"])
     name = {"type": "string", "description": "a mission file: a path or a bare name"}
     made["properties"]["mission"] = {"anyOf": [name, inline]}
+    expect = made["$defs"]["Expect"]["properties"]
+    for name_of_list in LISTS:
+        several = {key: expect[name_of_list].pop(key) for key in ("type", "items")}
+        expect[name_of_list]["anyOf"] = [several["items"], several]
+    made["properties"]["faults"] = fault_schema.faults(made["$defs"])
     return made
 
 

@@ -96,6 +96,19 @@ class Source:
             problems=self.problems + other.problems,
         )
 
+    def only_member(self, place: Place) -> Source:
+        """This source with the value at `place` as the only member of a list; it keeps its marks."""
+        member = self.part(place)
+        return self.graft(
+            place,
+            Source(
+                [member.data],
+                {(): self.at(place)} | {(0, *p): mark for p, mark in member.values.items()},
+                {(0, *p): mark for p, mark in member.keys.items() if p},
+                {(0, *p): folder for p, folder in member.folders.items()},
+            ),
+        )
+
 
 def read(path: Path, shown: str | None = None) -> Source:
     """Read a file; ConfigError when it cannot be read as one YAML document at all."""

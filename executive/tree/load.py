@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from executive.config.find import find, names, shown
 from executive.config.source import Mark, Place, Source, read, read_text
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
-from executive.errors import ConfigError
+from executive.errors import ConfigError, Problem
 from executive.expressions import GuardError
 from executive.guards import parse_guard
 from executive.nodes import LEAVES
@@ -39,7 +39,8 @@ def load_tree(
     """
     if isinstance(reference, str):
         reference = find("trees", reference, Path.cwd(), Mark(reference, 1, 1))
-    return _Trees(node_types(leaves), instead).load(reference.absolute(), ())
+    given = {str(path): _in_place_of(path, text) for path, text in instead.items()}
+    return _Trees(node_types(leaves), given).load(reference.absolute(), ())
 
 
 def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
@@ -47,28 +48,37 @@ def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf
     return _Trees(node_types(leaves)).read(read_text(text, name), ())
 
 
-class _Trees:
-    """One loading: every file is read once, however often it is used."""
+def check_trees(sources: Mapping[str, Source], skipped: Container[str] = ()) -> list[Problem]:
+    """Every problem of trees given by name, as if they were files that can use each other."""
+    trees, problems = _Trees(node_types(), sources), Problems()
+    for name in sources:
+        if name not in skipped:
+            problems.attempt(lambda n=name: trees.load(Path(n), ()))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+    return sorted(set(problems.found))
 
-    def __init__(self, types: Mapping[str, NodeType], instead: Instead = AS_IT_IS) -> None:
-        self.types, self.instead = types, instead
+
+def _in_place_of(path: Path, text: str) -> Source:
+    return replace(read_text(text, shown(path)), folders={(): path.parent})
+
+
+class _Trees:
+    """One loading: every file is read once, however often it is used. `given` trees need no file."""
+
+    def __init__(self, types: Mapping[str, NodeType], given: Mapping[str, Source] | None = None) -> None:
+        self.types, self.given = types, given or {}
         self.loaded: dict[Path, TreeSpec | ConfigError] = {}
 
     def load(self, path: Path, stack: tuple[Path, ...]) -> TreeSpec:
         if path not in self.loaded:
             try:
-                self.loaded[path] = self.read(self.source(path), (*stack, path))
+                source = self.given.get(str(path)) or read(path, shown(path))
+                self.loaded[path] = self.read(source, (*stack, path))
             except ConfigError as error:
                 self.loaded[path] = error
         result = self.loaded[path]
         if isinstance(result, ConfigError):
             raise result
         return result
-
-    def source(self, path: Path) -> Source:
-        if path not in self.instead:
-            return read(path, shown(path))
-        return replace(read_text(self.instead[path], shown(path)), folders={(): path.parent})
 
     def read(self, source: Source, stack: tuple[Path, ...]) -> TreeSpec:
         problems = Problems()
@@ -196,7 +206,8 @@ class _TreeReader:
 
     def _tree(self, word: str, mark: Mark) -> TreeSpec:
         try:
-            path = find("trees", word, self.source.folder(), mark)
+            given = word in self.trees.given
+            path = Path(word) if given else find("trees", word, self.source.folder(), mark)
         except ConfigError:
             known = [*self.trees.types, *names("trees")]
             message = f'got the unknown node "{word}", expected a node or a tree{guess(word, known)}'

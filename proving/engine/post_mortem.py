@@ -10,8 +10,8 @@ from typing import Any
 
 import yaml
 
+from executive.app import judged
 from executive.errors import LongarmError
-from executive.expectations import judge
 from executive.scenario import ResolvedScenario, resolve_scenario
 from executive.telemetry import History, events
 from executive.telemetry.recorder import Recorder
@@ -98,12 +98,14 @@ def _summarised(ending: Ending) -> dict[str, Any]:
     if not record.is_file():
         Recorder(record).close()  # it never began: an empty record says so, and the rest follows from it
     total = len(scenario.mission.waypoints) if scenario else None
-    result = summarise(record, folder / "truth.mcap", RunFigures(ending.wall_s, waypoints_total=total))
+    figures = RunFigures(ending.wall_s, waypoints_total=total)
+    if scenario is not None:
+        result = judged(scenario, folder, figures)
+        result |= {"scenario": scenario.name, "seed": scenario.seed, "tier": scenario.tier}
+    else:
+        result = summarise(record, folder / "truth.mcap", figures)
     said = ending.detail.splitlines()[:1]
     result |= {"outcome": "error", "reason": ": ".join([ending.cause, *said])}
-    if scenario is not None:
-        result |= {"scenario": scenario.name, "seed": scenario.seed, "tier": scenario.tier}
-        result["expectations"] = judge(scenario.expect, result)
     write_result(folder / "result.json", result)
     return result
 
