@@ -71,6 +71,14 @@ class Drawn:
         return {key: _kinds(data) if key == "faults" else _text(data) for key, data in told.items()}
 
 
+@dataclass(frozen=True)
+class Prepared:
+    """A case ready to be run: its scenario with every default written out, the kind of each fault by name."""
+
+    text: str
+    kinds: Mapping[str, str]
+
+
 def _text(data: object) -> str:
     return data if isinstance(data, str) else json.dumps(data, ensure_ascii=False)
 
@@ -128,15 +136,16 @@ def resolved(campaign: Campaign, case: Drawn) -> ResolvedScenario:
     return resolve(scenario_of(campaign, case))
 
 
-def text_of(campaign: Campaign, case: Drawn) -> str:
-    """The scenario of a case as a file of its own, every default written out.
+def prepared(campaign: Campaign, case: Drawn) -> Prepared:
+    """The scenario of a case as a file of its own.
 
     One that cannot be resolved is given as it is: its child will refuse it, and say why.
     """
     try:
-        return resolved(campaign, case).dump()
+        scenario = resolved(campaign, case)
     except ConfigError:
-        return str(yaml.safe_dump(scenario_of(campaign, case).data, sort_keys=False))
+        return Prepared(str(yaml.safe_dump(scenario_of(campaign, case).data, sort_keys=False)), {})
+    return Prepared(scenario.dump(), {fault.name: fault.spec.name for fault in scenario.faults})
 
 
 def draw_at(campaign: Campaign, place: Place, seed: int) -> Source:

@@ -11,7 +11,7 @@ from executive.clock import Stopwatch
 from executive.config.source import Source
 from executive.scenario import ResolvedScenario, resolve
 from executive.telemetry.versions import versions
-from proving.campaign.cases import Campaign, Drawn, case_number, put, seed_of, text_of
+from proving.campaign.cases import Campaign, Drawn, Prepared, case_number, prepared, put, seed_of
 from proving.campaign.folder import CampaignFolder
 from proving.campaign.row import row_of, write_row
 from proving.campaign.tally import Ended, Tally
@@ -91,7 +91,7 @@ class _Run:
     def __init__(self, campaign: Campaign, folder: CampaignFolder, tally: Tally, runs: int) -> None:
         self._campaign, self._folder, self._tally, self._runs = campaign, folder, tally, runs
         self._terms = Terms.of(base_of(campaign))
-        self._under_way: dict[str, Drawn] = {}
+        self._under_way: dict[str, tuple[Drawn, Prepared]] = {}
 
     def cases(self) -> Iterator[Case]:
         """The cases still to be run, in order, drawn when asked for; no more once enough is known."""
@@ -103,25 +103,28 @@ class _Run:
                 return
             drawn = case_number(self._campaign, number)
             folder = self._folder.work(number).absolute()
-            self._under_way[str(number)] = drawn
+            ready = prepared(self._campaign, drawn)
+            self._under_way[str(number)] = drawn, ready
             yield Case(
                 key=str(number),
                 file=folder / "scenario.yaml",
                 folder=folder,
-                text=text_of(self._campaign, drawn),
+                text=ready.text,
                 limits=Limits(limits.wall, limits.memory),
             )
 
     def began(self, case: Case) -> None:
-        drawn = self._under_way[case.key]
+        drawn, _ = self._under_way[case.key]
         self._folder.note(
             {"event": "started", "case": drawn.number, "setting": drawn.setting, "seed": drawn.seed}
         )
 
     def ended(self, ending: Ending) -> Ended:
         """Judge a case and keep it."""
-        drawn = self._under_way.pop(ending.case.key)
+        drawn, ready = self._under_way.pop(ending.case.key)
         result = settle(ending)
+        for row in result["faults"]:
+            row["kind"] = ready.kinds.get(row["name"])
         verdict = judged(ending, result, self._terms)
         ended = Ended(
             number=drawn.number,

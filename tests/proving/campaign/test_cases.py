@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from proving.campaign.cases import case_number, resolved, seed_of, text_of
+from proving.campaign.cases import case_number, prepared, resolved, seed_of
 from tests.proving.campaign.conftest import INLINE, VARY
 
 TWO = {"as_it_is": {}, "slow": {"world.advance": 0.5}}
@@ -17,8 +17,8 @@ def values(case):
 
 def test_a_case_is_the_same_whenever_it_is_drawn(load):
     one, again = load(), load()
-    forth = [text_of(one, case_number(one, n)) for n in range(6)]
-    back = [text_of(again, case_number(again, n)) for n in reversed(range(6))]
+    forth = [prepared(one, case_number(one, n)).text for n in range(6)]
+    back = [prepared(again, case_number(again, n)).text for n in reversed(range(6))]
     assert forth == back[::-1]
     assert len(set(forth)) == 6
 

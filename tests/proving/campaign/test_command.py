@@ -14,11 +14,12 @@ import pytest
 
 from executive.cli import invoke
 from executive.telemetry.recorder import Recorder
+from proving.campaign.command import _default_folder
 from proving.campaign.folder import CampaignFolder, read_journal
 
 ROOT = Path(__file__).resolve().parents[3]
 BAD = {"segfault": ("sut", "crash"), "hang": ("sut", "hang"), "eat_memory": ("sut", "memory")}
-LIMITS = {"wall": "4 s", "memory": "300 MiB"}
+LIMITS = {"wall": "10 s", "memory": "300 MiB"}
 
 
 def fault(name):
@@ -154,7 +155,7 @@ def test_a_kill_between_the_rename_and_the_journal_does_not_lose_the_case(compar
     assert digests(copy) == digests(folder)
 
 
-def test_ctrl_c_says_how_to_go_on(write, tmp_path, capsys, monkeypatch):
+def test_ctrl_c_says_how_to_go_on(write, capsys, monkeypatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
@@ -165,10 +166,16 @@ def test_ctrl_c_says_how_to_go_on(write, tmp_path, capsys, monkeypatch):
     assert capsys.readouterr().err == f"interrupted; to go on: longarm campaign {file} --out {out} --resume\n"
     assert list((out / "cases").iterdir()) == []
     assert not (out / "work").exists()
-    monkeypatch.undo()
-    monkeypatch.chdir(tmp_path)
-    assert invoke(["campaign", str(file), "--quiet", "--resume"]) == 0
-    assert sorted(digests(tmp_path / out)) == [0, 1, 2]
+
+
+def test_without_a_folder_named_the_next_free_one_is_taken_or_the_last_resumed(load, tmp_path):
+    campaign = load()
+    assert _default_folder(campaign, resume=False) == Path("runs/small-3")
+    assert _default_folder(campaign, resume=True) == Path("runs/small-3")
+    for name in ("small-3", "small-3-2"):
+        (tmp_path / "runs" / name).mkdir(parents=True)
+    assert _default_folder(campaign, resume=False) == Path("runs/small-3-3")
+    assert _default_folder(campaign, resume=True) == Path("runs/small-3-2")
 
 
 def test_a_campaign_stops_once_enough_is_known(write, capsys):

@@ -51,20 +51,35 @@ def test_each_bad_case_is_classed_and_the_good_one_does_not_notice(endings):
     assert not (endings["good"].case.folder / "output.log").exists()
 
 
-def test_a_case_comes_out_as_by_longarm_run(case, tmp_path):
+@pytest.fixture(scope="module")
+def server():
+    with ForkServer() as started:
+        yield started
+
+
+def test_a_case_comes_out_as_by_longarm_run(server, case, tmp_path):
     one = case()
-    (ending,) = run_cases([one], 1)
+    ending = run_alone(server, one)
     alone = app.run(one.file, app.RunOptions(out=tmp_path / "alone", bar=False))
     assert settle(ending)["digest"] == alone.result["digest"]
     assert (alone.folder / "report.html").is_file()
     assert not (one.folder / "report.html").exists(), "a report per case would take too long"
 
 
-def test_what_cannot_be_resolved_is_refused_and_not_begun_again(case):
-    (ending,) = run_cases([case(text="sede: 4\n")], 1)
+def test_what_cannot_be_resolved_is_refused_and_not_begun_again(server, case):
+    ending = run_alone(server, case(text="sede: 4\n"))
     assert (ending.kind, ending.attempts) == (CaseClass.REFUSED, 1)
     assert 'unknown key "sede"' in ending.detail
     assert settle(ending)["outcome"] == "error"
+
+
+def test_what_lies_in_the_folder_and_is_not_of_a_run_is_left_alone(server, case):
+    one = case()
+    one.folder.mkdir(parents=True)
+    (one.folder / "notes.txt").write_text("mine")
+    (one.folder / "result.json").write_text("of an earlier run")
+    assert settle(run_alone(server, one))["outcome"] == "reached"
+    assert (one.folder / "notes.txt").read_text() == "mine"
 
 
 def test_the_death_of_the_process_that_starts_cases_loses_no_case(case):
@@ -85,13 +100,3 @@ def test_a_case_is_taken_only_when_a_slot_is_free(case):
     with closing(run_cases(some(), 1)) as endings:
         assert next(endings).case.key == "a"
         assert taken == ["a"]
-
-
-def test_what_lies_in_the_folder_and_is_not_of_a_run_is_left_alone(case):
-    one = case()
-    one.folder.mkdir(parents=True)
-    (one.folder / "notes.txt").write_text("mine")
-    (one.folder / "result.json").write_text("of an earlier run")
-    (ending,) = run_cases([one], 1)
-    assert settle(ending)["outcome"] == "reached"
-    assert (one.folder / "notes.txt").read_text() == "mine"

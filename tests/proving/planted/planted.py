@@ -22,13 +22,13 @@ def segfault():
 
 def hang():
     while True:
-        pass
+        signal.pause()
 
 
 def eat_memory():
     eaten = []
     while True:
-        eaten.append(b"\1" * 10_000_000)
+        eaten.append(b"\1" * 50_000_000)
 
 
 def fill_disk():

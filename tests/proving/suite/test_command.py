@@ -18,9 +18,12 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_good_scenarios_end_with_0(scenario, capsys):
+def test_good_scenarios_end_with_0_and_other_yaml_is_left_alone(scenario, capsys, folder):
     scenario("one")
     scenario("two")
+    (folder / "deep").mkdir()
+    (folder / "deep" / "other.yaml").write_text("services: [web]\n")
+    (folder / "deep" / "broken.yml").write_text("a: [\n")
     assert invoke(["test", ".", "-j", "2"]) == 0
     out = capsys.readouterr().out
     assert out.count("passed") == 3
@@ -61,13 +64,10 @@ def test_every_problem_is_told_and_nothing_is_run(scenario, capsys, folder):
     assert not (folder / "runs").exists()
 
 
-def test_other_yaml_in_a_folder_is_left_alone(scenario, folder):
-    scenario("one")
-    (folder / "deep").mkdir()
-    (folder / "deep" / "other.yaml").write_text("services: [web]\n")
-    (folder / "deep" / "broken.yml").write_text("a: [\n")
-    assert invoke(["test", "."]) == 0
-    assert invoke(["test", "deep/other.yaml"]) == 2
+def test_a_file_that_is_no_scenario_is_told(folder, capsys):
+    (folder / "other.yaml").write_text("services: [web]\n")
+    assert invoke(["test", "other.yaml"]) == 2
+    assert 'other.yaml:1:1: got no "scenario"' in capsys.readouterr().err
 
 
 def test_coverage_needs_its_command(scenario, capsys, monkeypatch):
