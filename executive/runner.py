@@ -13,6 +13,7 @@ from executive.clock import Stopwatch
 from executive.errors import NodeRaised
 from executive.journal import RunJournal
 from executive.nodes.base import Leaf, Trace
+from executive.nodes.decorators import Guarded
 from executive.nodes.services import Services
 from executive.ports import Backend
 from executive.telemetry import events
@@ -78,7 +79,8 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
     limit_ticks = run.services.clock.ticks_for(run.time_limit_s)
     sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
     while True:
-        now = run.services.classification.sense(run.services.devices)
+        with watch.measure("tick"):
+            now = run.services.classification.sense(run.services.devices)
         run.each_tick()
         with watch.measure("tick"):
             run.root.tick_once()
@@ -100,7 +102,8 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
 
 def _ended(run: Run) -> RunEnd:
     if run.root.status is Status.SUCCESS:
-        return RunEnd("reached", None)
+        missed = run.journal.missed()
+        return RunEnd("safe_hold", missed) if missed else RunEnd("reached", None)
     failure = run.trace.last_failure
     reason = f"{failure[1].reason}: {failure[1].detail}" if failure else None
     call = run.journal.called
@@ -179,7 +182,7 @@ class _Changes:
 
     def _event(self, path: str, status: Status) -> events.NodeChange:
         outcome = self._outcomes.get(path)
-        if outcome is None or not isinstance(self._run.paths[path], Leaf):
+        if outcome is None or not isinstance(self._run.paths[path], Leaf | Guarded):
             return events.NodeChange(path, status.value.lower())
         reason = "" if outcome.reason is Reason.DONE else str(outcome.reason)
         return events.NodeChange(path, status.value.lower(), reason, outcome.detail)

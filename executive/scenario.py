@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ from executive.fault_entries import ResolvedFault, Setting, fault_entries, ungro
 from executive.pool_plugins import load_strategies, strategy_trees
 from executive.rig import RigCalibration
 from executive.tree.literals import literal
-from executive.tree.load import load_tree
+from executive.tree.load import Instead, load_tree
 from executive.tree.spec import TreeSpec, walk
 
 
@@ -45,6 +45,8 @@ class ResolvedScenario:
     backend: BackendSpec
     inputs: Mapping[str, object]
     """The mission's `tree_inputs`, in SI, for the tree's ports of these names."""
+    instead: Instead = field(default_factory=dict)
+    """Texts that stand for tree files in this run."""
 
     @property
     def name(self) -> str:
@@ -69,6 +71,12 @@ class ResolvedScenario:
     @property
     def time_limit_s(self) -> float:
         return self.file.time_limit
+
+    def with_trees(self, instead: Instead) -> ResolvedScenario:
+        """The same run if these tree files said something else; ConfigError where that cannot be loaded."""
+        tree = load_tree(self.mission.tree, instead=instead)
+        strategy_trees(load_strategies(), instead)
+        return replace(self, tree=tree, instead=instead)
 
     def dump(self) -> str:
         """YAML with every default written; resolves to an equal value, bit for bit."""

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Shot, Window
 from sim_pybullet.error_model import centre_error
 from sim_pybullet.exposing import full_windows
 from sim_pybullet.leds import MarkerOptics, Spot
-from sim_pybullet.projection import head_views
+from sim_pybullet.projection import View, scene_views
 from sim_pybullet.radiometry import Exposure, spread_reach_px
 from sim_pybullet.scene import SceneState
 
 CENTROID_SIGMA_PX = 15.0  # motion fragments: where the middle of a moving rover seems to be
+LIGHT_CHANGE, SHIFT_PX = 0.05, 0.5
+"""How far a frame may be from the mean of its shot; beyond, the detector refuses the images."""
 _ROVER_MIDDLE_BODY_M = np.array([0.0, 0.0, 0.065])
 
 
@@ -36,7 +40,7 @@ class CentreDeveloper:
         windows = shot.windows or full_windows(self._rig)
         for camera in (LEFT, RIGHT):
             if any(shot.leds):
-                found = self._markers(shot, scenes[-1], camera, windows[camera])
+                found = self._markers(shot, scenes, camera, windows[camera])
             else:
                 found = self._middle(scenes, camera, windows[camera])
             for index, (centre, sigma) in found.items():
@@ -44,27 +48,41 @@ class CentreDeveloper:
         return Centres(time_s, shot, uv_px, sigma_px, head)
 
     def _markers(
-        self, shot: Shot, scene: SceneState, camera: int, window: Window
+        self, shot: Shot, scenes: tuple[SceneState, ...], camera: int, window: Window
     ) -> dict[int, tuple[Array, float]]:
-        view = head_views(self._rig, scene.head_pan_rad, scene.head_tilt_rad)[camera]
+        scene = scenes[-1]
+        view = scene_views(self._rig, scene)[camera]
+        exposure = self._exposure.under(scene.seeing.light + view.lens.veil)
+        lost = exposure.ground_e >= exposure.full_well_e or not steady(scenes, view)
+        spots = self._brightest(scene, view, window)
         found = {}
         dark = shot.leds.count(0)
-        for index, spot in enumerate(self._optics.spots(scene, view)):
+        for index in range(len(spots)):
+            led = scene.seeing.wiring[index]
+            spot = replace(spots[led], electrons=0.0) if scene.seeing.always_lit >> led & 1 else spots[led]
             lit = sum(leds >> index & 1 for leds in shot.leds)
-            error = centre_error(spot, self._exposure, lit, dark)
+            error = centre_error(spot, exposure, lit, dark)
             # Drawn for every marker, so that one that vanishes does not change the others' luck.
             chance, noise = self._rng.uniform(), self._rng.standard_normal(2)
-            if chance < error.found and _within(spot, window):
+            if not lost and chance < error.found and _within(spot, window):
                 centre = np.array([spot.u_px, spot.v_px]) + noise * (error.sigma_u_px, error.sigma_v_px)
                 found[index] = (centre, error.reported_px)
         return found
+
+    def _brightest(self, scene: SceneState, view: View, window: Window) -> list[Spot]:
+        """Of each LED and its reflections in the window, the one that a detector would take for it."""
+        spots = self._optics.spots(scene, view)
+        for led, glint in self._optics.glints(scene, view):
+            if _within(glint, window):
+                spots[led] = max(spots[led], glint, key=lambda spot: spot.electrons)
+        return spots
 
     def _middle(
         self, scenes: tuple[SceneState, ...], camera: int, window: Window
     ) -> dict[int, tuple[Array, float]]:
         seen = []
         for scene in scenes:
-            view = head_views(self._rig, scene.head_pan_rad, scene.head_tilt_rad)[camera]
+            view = scene_views(self._rig, scene)[camera]
             T = scene.T_site_body
             seen.append(view.project(T[:3, :3] @ _ROVER_MIDDLE_BODY_M + T[:3, 3])[0])
         middle = np.mean(seen, axis=0)
@@ -83,3 +101,12 @@ def _within(spot: Spot, window: Window) -> bool:
         window.u + reach <= spot.u_px <= window.u + window.width - 1 - reach
         and window.v + reach <= spot.v_px <= window.v + window.height - 1 - reach
     )
+
+
+def steady(scenes: tuple[SceneState, ...], view: View) -> bool:
+    """Whether the frames of a shot show one scene: the same light, from a head that stands still."""
+    light = np.array([scene.seeing.light for scene in scenes])
+    head = np.array([(scene.head_pan_rad, scene.head_tilt_rad) for scene in scenes])
+    change = np.abs(light - light.mean()).max()
+    shift_px = view.camera.focal_px * np.hypot(*(head - head.mean(axis=0)).T).max()
+    return bool(change <= LIGHT_CHANGE and shift_px <= SHIFT_PX)

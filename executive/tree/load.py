@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,15 +23,24 @@ from executive.tree.literals import port_value
 from executive.tree.spec import GUARDS, Literal, NodeSpec, PortValue, Reference, TreeSpec
 
 MAX_SIZE = 5000
+Instead = Mapping[Path, str]
+"""Texts that stand for tree files: what if a file said something else?"""
+AS_IT_IS: Instead = {}
 BESIDE = ("name", *GUARDS)
 CHILD_KEYS = {"none": (), "one": ("child",), "two": ("children",), "many": ("children",)}
 
 
-def load_tree(reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
-    """Load by path or bare name; ConfigError with every problem in the file and the trees it uses."""
+def load_tree(
+    reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES, instead: Instead = AS_IT_IS
+) -> TreeSpec:
+    """Load by path or bare name; ConfigError with every problem in the file and the trees it uses.
+
+    A file among `instead` (by its absolute path) is taken to hold the text given there.
+    """
     if isinstance(reference, str):
         reference = find("trees", reference, Path.cwd(), Mark(reference, 1, 1))
-    return _Trees(node_types(leaves)).load(reference.absolute(), ())
+    given = {str(path): _in_place_of(path, text) for path, text in instead.items()}
+    return _Trees(node_types(leaves), given).load(reference.absolute(), ())
 
 
 def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
@@ -45,6 +55,10 @@ def check_trees(sources: Mapping[str, Source], skipped: Container[str] = ()) -> 
         if name not in skipped:
             problems.attempt(lambda n=name: trees.load(Path(n), ()))  # type: ignore[misc]  # mypy cannot infer bound lambdas
     return sorted(set(problems.found))
+
+
+def _in_place_of(path: Path, text: str) -> Source:
+    return replace(read_text(text, shown(path)), folders={(): path.parent})
 
 
 class _Trees:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +16,9 @@ LOST = "lost"
 INFRASTRUCTURE = "infrastructure"
 BEYOND_M = 0.001
 """Less than this driven beyond the margin is rounding."""
-_PASSED = frozenset({"pass", "passed", "ok"})
+BROKE = frozenset({INFRASTRUCTURE, "refused"})
+"""Classes of cases of which it is not known what they would have come to."""
+_PASSED = frozenset({"passed", "expected failure"})
 
 
 @dataclass(frozen=True)
@@ -70,14 +73,14 @@ class Case:
 
     @property
     def outcome(self) -> str:
-        """One of `result.json`'s outcomes, or `lost` where there is none."""
-        return str(self.result.get("outcome") or LOST)
+        """One of `result.json`'s outcomes, or `lost` where the case did not come to its own end."""
+        return LOST if self.class_ in BROKE else str(self.result.get("outcome") or LOST)
 
     @property
     def counts(self) -> bool:
         """Whether the case says anything of the system: not if it was the infrastructure, or never tested."""
-        broke = self.class_ in (INFRASTRUCTURE, "refused") or (self.outcome == LOST and self.class_ != "sut")
-        return not broke and self.outcome != "invalid"
+        lost = self.outcome == LOST and self.class_ != "sut"
+        return not lost and self.class_ not in BROKE and self.outcome != "invalid"
 
     @cached_property
     def passed(self) -> bool:
@@ -104,6 +107,12 @@ class Case:
         value = (self.result.get("truth") or {}).get(key)
         return None if value is None else float(value)
 
+    @cached_property
+    def quiet_s(self) -> float:
+        """Mission time during which no fault can have caused anything: until the first took effect [s]."""
+        fired = [row.t_on_s for row in self.faults if row.t_on_s is not None]
+        return min([float(self.result.get("mission_s") or 0.0), *fired])
+
     @property
     def cross_share(self) -> float | None:
         """Worst true cross-track error in units of the mission's narrowest off-track margin."""
@@ -117,8 +126,15 @@ class Case:
         if not isinstance(mission, Mapping):
             return None
         stated = [mission.get("segments") or {}, *(mission.get("waypoints") or [])]
-        margins = [_length_m(part.get("off_track")) for part in stated if isinstance(part, Mapping)]
+        margins = [_value(part.get("off_track")) for part in stated if isinstance(part, Mapping)]
         return min((m for m in margins if m is not None), default=None)
+
+    @property
+    def tilt_limit_deg(self) -> float | None:
+        """The tilt beyond which the rover is not safe, as the scenario has it [deg]."""
+        rig = self.scenario.get("rig") or {}
+        limit = _value((rig.get("rover") or {}).get("tilt_limit"))
+        return None if limit is None else math.degrees(limit)
 
     @cached_property
     def faults(self) -> tuple[FaultRow, ...]:
@@ -159,8 +175,8 @@ def _declared(entries: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:
     return found
 
 
-def _length_m(text: object) -> float | None:
-    """A length as a resolved scenario writes it [m]; None where there is none."""
+def _value(text: object) -> float | None:
+    """A quantity as a resolved scenario writes it, in SI; None where there is none."""
     try:
         return None if text is None else parse(str(text))[0]
     except UnitError:

@@ -103,7 +103,7 @@ def _scenario(path: Path) -> Mapping[str, Any]:
 
 
 def _journal(path: Path, missing: list[str]) -> dict[int, dict[str, Any]]:
-    """By case, all that was noted of it, the later over the earlier; a line cut off is left out."""
+    """By case that ended, all that was noted of it; a line cut off is left out."""
     if not path.is_file():
         missing.append("journal.jsonl: not there; cases that left no folder are not known")
         return {}
@@ -112,7 +112,7 @@ def _journal(path: Path, missing: list[str]) -> dict[int, dict[str, Any]]:
         index = entry.get("case", entry.get("index"))
         if isinstance(index, int):
             noted.setdefault(index, {}).update(entry)
-    return noted
+    return {index: entry for index, entry in noted.items() if entry.get("event") == "ended"}
 
 
 def _lines(path: Path) -> Iterator[dict[str, Any]]:

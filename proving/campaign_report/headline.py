@@ -37,7 +37,7 @@ def tiles(campaign: Campaign, alarms: Alarms) -> list[Tile]:
     errors = [e for case in campaign.counted if (e := case.truth("final_error_m")) is not None]
     shares = [s for case in campaign.counted if (s := case.cross_share) is not None]
     mission_s = [float(case.result.get("mission_s") or 0.0) for case in campaign.cases]
-    per_hour = f"{alarms.total / alarms.hours:.2f} an hour" if alarms.hours else "no case without a fault"
+    per_hour = f"{alarms.total / alarms.hours:.2f} an hour" if alarms.hours else "no time without a fault"
     median = float(np.median(errors)) if errors else None
     return [
         Tile("faults injected", str(len(fired)), f"{len({row.kind for row in fired})} kinds"),
@@ -65,10 +65,9 @@ def _classes(campaign: Campaign) -> str:
     parts = [f"{n} {_CLASSES.get(name, name)}" for name, n in sorted(classes.items())]
     if invalid:
         parts.append(f"{invalid} invalid")
-    planned = campaign.about.get("runs")
-    begun = len(campaign.cases)
-    if isinstance(planned, int) and begun < planned * len(campaign.settings):
-        parts.append(f"{planned * len(campaign.settings)} planned")
+    planned = campaign.about.get("total")
+    if isinstance(planned, int) and len(campaign.cases) < planned:
+        parts.append(f"{planned} planned")
     return ", ".join(parts) or "none lost, none invalid"
 
 

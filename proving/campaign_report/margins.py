@@ -21,8 +21,9 @@ def margins(campaign: Campaign) -> Figure | None:
     if not placed:
         return None
     across = Scale(0.0, max(1.12, 1.05 * max(x for _, x, _ in placed)), _LEFT, _WIDTH - 8)
-    up = Scale(0.0, max(10.0, 1.15 * max(y for _, _, y in placed)), _BOTTOM, _TOP)
-    body = [_frame(across, up)]
+    limit = min((deg for case, _, _ in placed if (deg := case.tilt_limit_deg) is not None), default=None)
+    up = Scale(0.0, 1.12 * max(9.0, limit or 0.0, max(y for _, _, y in placed)), _BOTTOM, _TOP)
+    body = [_frame(across, up), _limit(across, up, limit)]
     body += [_dot(case, across(x), up(y)) for case, x, y in sorted(placed, key=lambda p: bool(p[0].unsafe))]
     drawn = svg.drawing(_WIDTH, _BOTTOM + 40, body, aria_label="Margins")
     words = [
@@ -33,9 +34,9 @@ def margins(campaign: Campaign) -> Figure | None:
     worst, tilt = max(x for _, x, _ in placed), max(y for _, _, y in placed)
     caption = (
         "Each dot is a case: its largest true cross-track error in units of the off-track margin, and its "
-        f"largest true tilt. The worst came to {worst:.2f} of the margin and to {tilt:.1f}° of tilt. Right "
-        "of the red line the rover stood beyond the margin; only driving on there under autonomous command "
-        "breaks a safety expectation."
+        f"largest true tilt. The worst came to {worst:.2f} of the margin and to {tilt:.1f}° of tilt. The red "
+        "lines are the limits. Beyond the margin the rover may come to stand, where the ground moves it; "
+        "driving on there under autonomous command breaks a safety expectation."
     )
     return Figure("margins", "Margins", legend(words) + drawn, caption)
 
@@ -64,6 +65,17 @@ def _frame(across: Scale, up: Scale) -> str:
         svg.text(across.end, _BOTTOM + 33, "largest cross-track error / off-track margin", class_="axis end")
     )
     return "".join(body)
+
+
+def _limit(across: Scale, up: Scale, limit_deg: float | None) -> str:
+    """The tilt beyond which the rover is not safe, where the scenarios say it."""
+    if limit_deg is None:
+        return ""
+    size = {"x": _LEFT, "y": _TOP, "width": across.end - _LEFT, "height": max(up(limit_deg) - _TOP, 0.0)}
+    beyond = svg.element("rect", **size, fill="var(--bad)", fill_opacity=0.09)
+    return beyond + svg.line(
+        _LEFT, up(limit_deg), across.end, up(limit_deg), stroke="var(--bad)", stroke_width=1.6
+    )
 
 
 def _dot(case: Case, x: float, y: float) -> str:

@@ -90,7 +90,7 @@ def _fault(kind: str, t_on_s: float | None, fired: bool) -> str:
 
 def _ending(case: Case) -> str:
     if case.outcome == LOST:
-        cause = case.about.get("detail") or case.about.get("reason") or "left no result"
+        cause = case.about.get("detail") or case.about.get("cause") or "left no result"
         return f"lost ({case.class_ or 'unknown'}): {cause}"
     if case.result.get("reason"):
         why = _PATH.sub(r"\1", str(case.result["reason"]))  # of a node's path its name is enough

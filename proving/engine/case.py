@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from pathlib import Path
@@ -26,17 +27,19 @@ class Limits:
 class Case:
     """A scenario file as `longarm run` takes it, and the folder that the run is written into.
 
-    `part` is the place of the scenario inside the file, `()` for a scenario file; `overrides` are texts
-    `key=value` as with `--set`. `key` tells the cases of one batch apart.
+    `text`, where given, is the scenario itself, and `file` only what messages call it; `overrides` are texts
+    `key=value` as with `--set`. `instead` gives texts that stand for tree files, by absolute path. `key`
+    tells the cases of one batch apart.
     """
 
     key: str
     file: Path
     folder: Path
-    part: tuple[str, ...] = ()
+    text: str | None = None
     seed: int | None = None
     tier: str | None = None
     overrides: tuple[str, ...] = ()
+    instead: Mapping[str, str] = field(default_factory=dict)
     limits: Limits = field(default_factory=Limits)
 
     def to_json(self) -> dict[str, Any]:
@@ -54,7 +57,6 @@ class Case:
         parts = {
             "file": Path(data["file"]),
             "folder": Path(data["folder"]),
-            "part": tuple(data["part"]),
             "overrides": tuple(data["overrides"]),
             "limits": Limits(**data["limits"]),
         }
@@ -84,3 +86,12 @@ class Ending:
     wall_s: float = 0.0
     memory_bytes: int = 0
     attempts: int = 1
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data that `from_json` reads back."""
+        return asdict(self) | {"case": self.case.to_json()}
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Ending:
+        """The ending that `to_json` wrote."""
+        return cls(**data | {"case": Case.from_json(data["case"]), "kind": CaseClass(data["kind"])})

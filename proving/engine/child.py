@@ -9,10 +9,11 @@ import resource
 import sys
 import traceback
 from collections.abc import Iterator
+from pathlib import Path
 
 from executive import app
 from executive.config.find import shown
-from executive.config.source import read
+from executive.config.source import read, read_text
 from executive.errors import LongarmError
 from executive.scenario import resolve_source
 from proving.engine.case import LOG, Case
@@ -37,8 +38,11 @@ def run(case: Case) -> int:
 
 
 def _run(case: Case) -> int:
-    source = read(case.file, shown(case.file))
-    scenario = resolve_source(source.part(case.part), case.seed, case.tier, case.overrides)
+    name = shown(case.file)
+    source = read(case.file, name) if case.text is None else read_text(case.text, name)
+    scenario = resolve_source(source, case.seed, case.tier, case.overrides)
+    if case.instead:
+        scenario = scenario.with_trees({Path(file): text for file, text in case.instead.items()})
     finished = app.run_scenario(scenario, app.RunOptions(out=case.folder, bar=False, report=False))
     return DONE if finished.defect is None else _blame(finished.defect)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 
 from proving.engine.case import Case, CaseClass, Ending
 from proving.engine.post_mortem import ending_of
@@ -15,7 +15,7 @@ ATTEMPTS = 2
 
 def run_cases(
     cases: Iterable[Case], slots: int, begun: Callable[[Case], None] = lambda case: None
-) -> Iterator[Ending]:
+) -> Generator[Ending, None, None]:
     """The ending of each case, in the order in which they end.
 
     A case is taken from `cases` when a slot is free, so that who gives them may stop giving. Closing the

@@ -20,7 +20,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from executive import plugins
+from executive import plugins, units
+from executive.backends import BackendSpec
 from executive.clock import Stopwatch
 from executive.errors import PluginError
 from proving.engine import child
@@ -174,7 +175,10 @@ def _preload() -> None:
     for group in (plugins.BACKENDS, plugins.LOCALIZERS, plugins.STRATEGIES, plugins.FAULTS):
         for name in plugins.found(group):
             with suppress(PluginError):
-                plugins.load(group, name)
+                plugin = plugins.load(group, name)
+                if isinstance(plugin, BackendSpec):
+                    plugin.preload()
+    units.factor("m")  # half a second the first time
 
 
 def main() -> None:

@@ -42,7 +42,7 @@ class Told:
         self.folder, self.base = folder, base
         self.result = json.loads((base / "result.json").read_text())
         (folder / "cases").mkdir(parents=True)
-        about = {"campaign": "told", "doc": "A test.", "seed": 5, "runs": 4, "scenario": "synthetic"}
+        about = {"campaign": "told", "doc": "A test.", "seed": 5, "total": 40, "scenario": "synthetic"}
         about |= {"settings": list(settings), "command": "longarm campaign told.yaml"}
         (folder / "campaign.json").write_text(json.dumps(about))
         (folder / "journal.jsonl").write_text("")
@@ -62,7 +62,7 @@ class Told:
         """Add a case; `more` replaces keys of its result."""
         result = copy.deepcopy(self.result) | {"outcome": outcome, "reason": None, "faults": list(faults)}
         seed = index if seed is None else seed
-        result |= {"expectations": [], "strategies": [], "seed": seed}
+        result |= {"expectations": [], "strategies": [], "seed": seed, "safety": [], "false_alarms": []}
         result["truth"] |= {"final_error_m": error_m, "driven_beyond_off_track_m": 0.0}
         result["case"] = {"index": index, "seed": seed, "setting": setting, "class": None}
         result["case"]["verdict"] = "passed" if outcome == "reached" else "failed"
@@ -70,6 +70,7 @@ class Told:
         folder.mkdir()
         (folder / "result.json").write_text(json.dumps(result | more))
         scenario = {
+            "rig": {"rover": {"tilt_limit": "0.5 rad"}},
             "mission": {"segments": {"off_track": "250 mm"}},
             "world": {"light": {"sun_elevation": f"{sun_deg} deg"}},
             "faults": [{row["kind"]: {}, "name": row["name"]} for row in faults],

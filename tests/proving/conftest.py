@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from executive.app import RunOptions, run
 from proving.engine import Case, Limits
 
 PLANTED = Path(__file__).with_name("planted")
@@ -73,3 +74,39 @@ def case(tmp_path, scenario):
         return Case(name, file, tmp_path / "out" / name, limits=Limits(wall_s, memory_bytes), **more)
 
     return make
+
+
+TOUR = """\
+scenario: {name}
+mission:
+  mission: short
+  waypoints:
+    - {{x: 2.0 m, y: 0 m}}
+    - {{x: 2.4 m, y: 0 m}}
+    - {{x: 2.8 m, y: 0.1 m}}
+backend: fake
+localizer: overhead
+tier: geometric
+time_limit: 3 h
+expect: {{outcome: reached}}
+"""
+FROZEN = "faults:\n  - frozen_frame: {}\n    from: {node: localise, count: 3}\n    for: 10 min\n"
+
+
+@pytest.fixture(scope="session")
+def suite(tmp_path_factory):
+    """A folder with two scenarios that pass: one without a fault, one whose cameras freeze for a while."""
+    folder = tmp_path_factory.mktemp("suite")
+    (folder / "plain.yaml").write_text(TOUR.format(name="plain"))
+    (folder / "frozen.yaml").write_text(TOUR.format(name="frozen") + FROZEN)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def runs(suite, tmp_path_factory):
+    """The run folders of that suite."""
+    folder = tmp_path_factory.mktemp("runs")
+    for file in sorted(suite.glob("*.yaml")):
+        options = RunOptions(out=folder / file.stem, bar=False, report=False)
+        assert run(file, options).exit_code == 0
+    return folder

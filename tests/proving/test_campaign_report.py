@@ -7,6 +7,7 @@ import pytest
 from executive.cli import invoke
 from executive.errors import RecordError
 from proving.campaign_report import write_campaign_report
+from proving.campaign_report.alarms import alarms
 from proving.campaign_report.comparison import comparisons
 from proving.campaign_report.detection import UNDETECTED, matrix
 from proving.campaign_report.gather import gather
@@ -14,7 +15,7 @@ from proving.campaign_report.groups import by_fault, ends, success
 from proving.campaign_report.listing import rows
 from proving.campaign_report.parameters import varied
 from proving.campaign_report.worst import ranked, story
-from tests.proving.campaigns import SETTINGS, Told, fault
+from tests.proving.campaigns import ON_S, SETTINGS, Told, fault
 from tests.record.synthetic import make_run
 from tests.record.test_report import parsed
 
@@ -89,7 +90,7 @@ def test_a_safety_row_that_nobody_could_judge_is_no_violation(told):
 
 def test_driving_beyond_the_margin_is_unsafe_where_no_safety_was_judged(told):
     truth = told.result["truth"] | {"driven_beyond_off_track_m": 0.02}
-    told.case(0, truth=truth)
+    told.case(0, truth=truth, safety=None)
     (case,) = gather(told.folder).cases
     assert case.unsafe == ("drove 20 mm beyond the off-track margin",)
 
@@ -162,6 +163,16 @@ def test_a_pair_needs_both_its_cases(base, tmp_path):
     assert parsed(page_of(made)).wrong == []
 
 
+def test_margins_are_drawn_with_their_limits(told):
+    told.case(0)
+    (case,) = gather(told.folder).cases
+    assert case.off_track_m == 0.25
+    assert case.tilt_limit_deg == pytest.approx(28.6479, abs=1e-4)
+    page = page_of(told)
+    drawn = page[page.index('aria-label="Margins"') :].partition("</svg>")[0]
+    assert drawn.count('fill-opacity="0.09"') == 2
+
+
 def test_the_worst_cases_come_first_with_map_and_command(told):
     told.case(0, error_m=0.001)
     told.case(1, outcome="help", error_m=0.5)
@@ -195,12 +206,15 @@ def test_what_differs_from_case_to_case_is_shown_with_its_success(full):
     assert "world.light.sun_elevation [deg]" in page_of(full)
 
 
-def test_alarms_without_a_fault_come_from_the_records(told):
-    told.case(0)
-    page = page_of(told)
-    alarms = page[page.index('<section id="alarms">') :]
-    assert "slip turning" in alarms  # the synthetic run thinks so once, though no fault is told of here
-    assert "From the 1 cases without a fault" in alarms
+def test_alarms_are_counted_over_the_time_before_any_fault(told):
+    told.case(0, false_alarms=[{"t_s": 50.0, "hypothesis": "poor_view"}], mission_s=3000.0)
+    early, late = {"name": "fresh_look", "t_s": 60.0}, {"name": "back_off", "t_s": ON_S + 10}
+    told.case(1, (LED,), strategies=[early, late])
+    found = alarms(gather(told.folder))
+    assert found.hours == (3000.0 + ON_S) / 3600
+    assert (found.total, found.alarmed, found.without_fault) == (1, (0,), 1)
+    assert found.strategies == {"fresh_look": 1}
+    assert "<td>poor view</td><td>1</td><td>1.00</td>" in page_of(told)
 
 
 def test_words_of_a_case_cannot_break_the_page(told):
