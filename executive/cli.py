@@ -14,7 +14,6 @@ import click
 from executive.command_group import CommandGroup
 from executive.errors import LongarmError
 
-NOT_YET = ("campaign", "replay", "minimise")
 DEFECT = 3
 
 
@@ -262,18 +261,3 @@ def schema(kind: str) -> int:
         )
     click.echo(json.dumps(schemas.schema(kind), indent=2, ensure_ascii=False))
     return 0
-
-
-def _not_yet(name: str) -> None:
-    settings = {"ignore_unknown_options": True}
-
-    @cli.command(
-        name, help=f"Not yet available.\n\nExample: longarm {name} --help", context_settings=settings
-    )
-    @click.argument("arguments", nargs=-1, type=click.UNPROCESSED)
-    def command(arguments: tuple[str, ...]) -> int:
-        raise click.UsageError(f"longarm {name} is not there yet")
-
-
-for _name in NOT_YET:
-    _not_yet(_name)
