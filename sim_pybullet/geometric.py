@@ -54,7 +54,7 @@ class CentreDeveloper:
         view = scene_views(self._rig, scene)[camera]
         exposure = self._exposure.under(scene.seeing.light + view.lens.veil)
         lost = exposure.ground_e >= exposure.full_well_e or not steady(scenes, view)
-        spots = self._brightest(scene, view)
+        spots = self._brightest(scene, view, window)
         found = {}
         dark = shot.leds.count(0)
         for index in range(len(spots)):
@@ -69,11 +69,12 @@ class CentreDeveloper:
                 found[index] = (centre, error.reported_px)
         return found
 
-    def _brightest(self, scene: SceneState, view: View) -> list[Spot]:
-        """Of each LED and its reflections, the one that a detector would take for it."""
+    def _brightest(self, scene: SceneState, view: View, window: Window) -> list[Spot]:
+        """Of each LED and its reflections in the window, the one that a detector would take for it."""
         spots = self._optics.spots(scene, view)
         for led, glint in self._optics.glints(scene, view):
-            spots[led] = max(spots[led], glint, key=lambda spot: spot.electrons)
+            if _within(glint, window):
+                spots[led] = max(spots[led], glint, key=lambda spot: spot.electrons)
         return spots
 
     def _middle(

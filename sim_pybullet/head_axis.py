@@ -8,8 +8,9 @@ from sim_pybullet.joints import Axis
 class HeadAxis(Axis):
     """What its encoder cannot see is the difference between `true_rad` and `angle_rad`.
 
-    `error_rad` is that of the last move; `bias_rad` stays. Of each motion the share `lost_share` does not
-    reach the head, and `play_rad` between gear and head is taken up first whenever it turns the other way.
+    `error_rad` is that of the last move; `bias_rad` stays. Of each motion to the positive side, against the
+    pull of the harness, the share `lost_share` does not reach the head, and `play_rad` between gear and head
+    is taken up first whenever it turns the other way.
     The encoder does see that the axis is `locked`, or as slow as `rate_factor` makes it.
     """
 
@@ -36,6 +37,6 @@ class HeadAxis(Axis):
         if not self.locked:
             super().advance(tick_s * self.rate_factor)
         moved_rad = self.angle_rad - before_rad
-        self.lost_rad += self.lost_share * moved_rad
+        self.lost_rad += self.lost_share * max(moved_rad, 0.0)
         half_rad = self.play_rad / 2
         self._taken_up_rad = min(half_rad, max(-half_rad, self._taken_up_rad - moved_rad))

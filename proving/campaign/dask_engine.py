@@ -18,7 +18,7 @@ from proving.engine import Case, CaseClass, Ending
 from proving.engine.server import ForkServer
 from proving.engine.supervisor import ATTEMPTS, run_alone
 
-CONNECT_S = 30
+CONNECT_S = 10
 _OF_THIS_THREAD = threading.local()
 
 Task = tuple[dict[str, Any], dict[str, bytes]]

@@ -78,6 +78,3 @@ def _data(found: Filled, files: dict[Path, Proposal]) -> dict[str, object]:
         for file, p in files.items()
     ]
     return {"before": found.before, "after": found.after, "runs": found.runs, "scenarios": listing}
-
-
-COMMAND = fill

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class CameraChoice(Parameters):
     """Which camera."""
 
-    camera: Literal["left", "right", "both"] = "both"
+    camera: Annotated[Literal["left", "right", "both"], Field(description="which one")] = "both"
 
     def has(self, camera: int) -> bool:
         """Whether LEFT or RIGHT is meant."""
@@ -31,13 +31,18 @@ class CameraChoice(Parameters):
 class Blur(CameraChoice):
     """Which camera, and the width of the blur in pixels: the standard deviation of a Gaussian."""
 
-    sigma: Annotated[float, Field(gt=0, le=20)] = 2.0
+    sigma: Annotated[
+        float,
+        Field(gt=0, le=20, description="width of the blur in pixels, the standard deviation of a Gaussian"),
+    ] = 2.0
 
 
 class Trembling(Parameters):
     """How far the head sways to either side of where it points."""
 
-    amplitude: Annotated[Angle, Field(gt=0, le=math.radians(2))] = math.radians(0.03)
+    amplitude: Annotated[Angle, Field(gt=0, le=math.radians(2), description="to either side")] = math.radians(
+        0.03
+    )
 
 
 class ImageBlur(WorldFault[Blur]):

@@ -23,34 +23,38 @@ Small = Annotated[Angle, Field(ge=-math.radians(10), le=math.radians(10))]
 class Offset(Parameters):
     """By how much the head points beyond what its encoders say: left and down positive."""
 
-    pan: Small = math.radians(0.4)
-    tilt: Small = 0.0
+    pan: Annotated[Small, Field(description="beyond the encoder, left positive")] = math.radians(0.4)
+    tilt: Annotated[Small, Field(description="beyond the encoder, down positive")] = 0.0
 
 
 class Play(Parameters):
     """The play between gear and head, of both axes."""
 
-    play: Annotated[Angle, Field(gt=0, le=math.radians(5))] = math.radians(0.3)
+    play: Annotated[
+        Angle, Field(gt=0, le=math.radians(5), description="between gear and head, of both axes")
+    ] = math.radians(0.3)
 
 
 class Slowness(Parameters):
     """How fast both axes turn compared with a sound head."""
 
-    factor: Annotated[Fraction, Field(gt=0, lt=1)] = 0.2
+    factor: Annotated[Fraction, Field(gt=0, lt=1, description="speed, of that of a sound head")] = 0.2
 
 
 class Loss(Parameters):
-    """The share of every motion of both axes that does not reach the head."""
+    """The share of every motion to the left, or down, that does not reach the head."""
 
-    share: Annotated[Fraction, Field(gt=0, le=1)] = 0.05
+    share: Annotated[Fraction, Field(gt=0, le=1, description="of every motion to the left or down")] = 0.05
 
 
 class Settling(Parameters):
     """How far the lander sinks, and how far it leans over towards a direction (from site x, to the left)."""
 
-    sinks: Annotated[Length, Field(ge=0, le=0.2)] = 0.01
-    leans: Annotated[Angle, Field(ge=0, le=math.radians(5))] = math.radians(0.3)
-    towards: Angle = 0.0
+    sinks: Annotated[Length, Field(ge=0, le=0.2, description="how far")] = 0.01
+    leans: Annotated[Angle, Field(ge=0, le=math.radians(5), description="how far")] = math.radians(0.3)
+    towards: Annotated[Angle, Field(description="direction that it leans to, from site x, left positive")] = (
+        0.0
+    )
 
 
 def _axes(sim: WorldFaults) -> tuple[HeadAxis, HeadAxis]:
@@ -112,7 +116,7 @@ class HeadBacklash(_Mispointing, WorldFault[Play]):
 
 
 class HeadStepLoss(_Mispointing, WorldFault[Loss]):
-    """The head's motors lose steps that are counted all the same; the error adds up from move to move."""
+    """The head's motors lose steps going left and down, counted all the same; the error adds up by moves."""
 
     def act(self, sim: WorldFaults, level: float) -> None:
         for axis in _axes(sim):
@@ -137,7 +141,7 @@ class LanderSettling(WorldFault[Settling]):
 OUTLIER = Hypothesis.LOCALISATION_OUTLIER
 PAN_LOCKED = spec("pan_locked", PanLocked, Nothing, Hypothesis.LOST_ROVER, "head")
 TILT_LOCKED = spec("tilt_locked", TiltLocked, Nothing, Hypothesis.LOST_ROVER, "head")
-HEAD_SLOW = spec("head_slow", HeadSlow, Slowness, Hypothesis.NOMINAL, "head", graded=True)
+HEAD_SLOW = spec("head_slow", HeadSlow, Slowness, None, "head", graded=True)
 HEAD_OFFSET = spec("head_offset", HeadOffset, Offset, OUTLIER, "head", graded=True)
 HEAD_BACKLASH = spec("head_backlash", HeadBacklash, Play, OUTLIER, "head", graded=True)
 HEAD_STEP_LOSS = spec("head_step_loss", HeadStepLoss, Loss, OUTLIER, "head")

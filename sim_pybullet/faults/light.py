@@ -24,21 +24,34 @@ Half = Annotated[Angle, Field(ge=-math.pi, le=math.pi)]
 class SunPath(Parameters):
     """How far the sun has moved at full severity; with the profile `ramp`, over that time."""
 
-    elevation: Half = math.radians(-20)
-    azimuth: Half = math.radians(40)
+    elevation: Annotated[Half, Field(description="how much higher it stands at full severity")] = (
+        math.radians(-20)
+    )
+    azimuth: Annotated[
+        Half, Field(description="how far it has gone round at full severity, left positive")
+    ] = math.radians(40)
 
 
 class Clouds(Parameters):
     """The share of the light that the thickest cloud takes, and the time from one to the next."""
 
-    depth: Annotated[Fraction, Field(gt=0, le=0.95)] = 0.6
-    period: Annotated[Duration, Field(ge=5, le=3600)] = 40.0
+    depth: Annotated[
+        Fraction, Field(gt=0, le=0.95, description="light that the thickest cloud takes, of all")
+    ] = 0.6
+    period: Annotated[Duration, Field(ge=5, le=3600, description="from one cloud to the next")] = 40.0
 
 
 class Veil(CameraChoice):
-    """Which camera, and its stray light over that of sunlit ground; from 1.5 on it saturates."""
+    """Which camera, and its stray light over that from sunlit ground."""
 
-    veil: Annotated[Fraction, Field(gt=0, le=20)] = 1.6
+    veil: Annotated[
+        Fraction,
+        Field(
+            gt=0,
+            le=20,
+            description="stray light, of that from sunlit ground, which saturates from 1.5 on",
+        ),
+    ] = 2.5
 
 
 class SunMoving(WorldFault[SunPath]):
@@ -68,7 +81,8 @@ class Cloud(WorldFault[Clouds]):
 
     def _shade(self, sim: WorldFaults) -> None:
         now_s = sim.world.clock.now_s
-        self._began_s = now_s if self._began_s is None else self._began_s
+        if self._began_s is None or self.level == 0.0:
+            self._began_s = now_s
         phase = 2 * math.pi * (now_s - self._began_s) / self.p.period
         sim.see(clouds=1.0 - self.p.depth * self.level * (1 - math.cos(phase)) / 2)
 

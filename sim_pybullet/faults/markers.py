@@ -18,14 +18,17 @@ if TYPE_CHECKING:
 
 MarkerIndex = Annotated[int, Field(ge=0, le=3)]
 BETWEEN_GLINTS_RAD = 2.4  # the golden angle: any number of them lies well apart
-GLINT_HEIGHT_M = 0.02
+GLINT_HEIGHT_M = 0.14  # above the cabin, so that it shows from all round
 
 
 class Markers(Parameters):
     """Which of the four LEDs, counted from 0: one `marker`, or several `markers`."""
 
-    marker: MarkerIndex | None = None
-    markers: Annotated[tuple[MarkerIndex, ...], Field(min_length=1, max_length=4)] | None = None
+    marker: Annotated[MarkerIndex | None, Field(description="one LED, counted from 0")] = None
+    markers: (
+        Annotated[tuple[MarkerIndex, ...], Field(min_length=1, max_length=4, description="several LEDs")]
+        | None
+    ) = None
 
     @model_validator(mode="after")
     def one_way_to_say_it(self) -> Self:
@@ -44,13 +47,13 @@ class Markers(Parameters):
 class Dimming(Markers):
     """Which LEDs, and to how much of their nominal power they fall."""
 
-    factor: Annotated[Fraction, Field(ge=0, le=1)] = 0.3
+    factor: Annotated[Fraction, Field(ge=0, le=1, description="power, of the nominal one")] = 0.3
 
 
 class Pair(Parameters):
     """The two LEDs, counted from 0, whose lines are exchanged."""
 
-    markers: tuple[MarkerIndex, MarkerIndex] = (0, 2)
+    markers: Annotated[tuple[MarkerIndex, MarkerIndex], Field(description="the two LEDs")] = (0, 2)
 
     @model_validator(mode="after")
     def two_of_them(self) -> Self:
@@ -67,18 +70,25 @@ class Reflections(Parameters):
     each is `strength` times as bright as its LED.
     """
 
-    marker: MarkerIndex = 0
-    count: Annotated[int, Field(ge=1, le=5)] = 1
-    away: Annotated[Length, Field(ge=0.05, le=2)] = 0.25
-    bearing: Angle = math.radians(60)
-    strength: Annotated[Fraction, Field(ge=1, le=10)] = 1.5
+    marker: Annotated[
+        MarkerIndex,
+        Field(description="the LED that the first spot blinks with; the next ones take the LEDs after it"),
+    ] = 0
+    count: Annotated[int, Field(ge=1, le=5, description="how many spots")] = 1
+    away: Annotated[Length, Field(ge=0.02, le=2, description="their distance from the rover's middle")] = 0.1
+    bearing: Annotated[Angle, Field(description="of the first one, from the rover's heading")] = math.radians(
+        60
+    )
+    strength: Annotated[Fraction, Field(ge=1, le=10, description="brightness, of that of the LED")] = 1.5
 
 
 class Hiding(Markers):
     """Which LEDs, how large a thing hangs before each, and how far before it on the way to the head."""
 
-    size: Annotated[Length, Field(gt=0, le=0.2)] = 0.03
-    away: Annotated[Length, Field(gt=0, le=1)] = 0.08
+    size: Annotated[Length, Field(gt=0, le=0.2, description="diameter of what hangs there")] = 0.03
+    away: Annotated[
+        Length, Field(gt=0, le=1, description="its distance from the marker, towards the head")
+    ] = 0.08
 
 
 class LedOff(WorldFault[Markers]):

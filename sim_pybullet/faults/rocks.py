@@ -22,35 +22,48 @@ RISING_M_S = 0.001
 class RockAhead(Parameters):
     """How far along the planned path ahead of the rover; the rock is a sphere, its centre in the ground."""
 
-    ahead: Annotated[Length, Field(ge=0.25, le=5)] = 0.5
-    aside: Annotated[Length, Field(ge=-0.3, le=0.3)] = 0.0
-    radius: Annotated[Length, Field(gt=0, le=0.5)] = 0.10
+    ahead: Annotated[
+        Length, Field(ge=0.25, le=5, description="its middle, along the planned path ahead of the rover")
+    ] = 0.5
+    aside: Annotated[Length, Field(ge=-0.3, le=0.3, description="its middle, to the left of the path")] = 0.0
+    radius: Annotated[Length, Field(gt=0, le=0.5, description="of the sphere")] = 0.10
 
 
 class RollingRock(Parameters):
     """A rock that rolls across the planned path, from one place beside it (left positive) to another."""
 
-    ahead: Annotated[Length, Field(ge=0.25, le=5)] = 0.5
-    from_aside: Annotated[Length, Field(ge=-2, le=2)] = 0.6
-    to_aside: Annotated[Length, Field(ge=-2, le=2)] = 0.0
-    radius: Annotated[Length, Field(gt=0, le=0.5)] = 0.10
-    speed: Annotated[Speed, Field(gt=0, le=0.1)] = 0.005
+    ahead: Annotated[
+        Length,
+        Field(ge=0.25, le=5, description="where it crosses, along the planned path ahead of the rover"),
+    ] = 0.5
+    from_aside: Annotated[
+        Length, Field(ge=-2, le=2, description="where it starts, to the left of the path")
+    ] = 0.6
+    to_aside: Annotated[
+        Length, Field(ge=-2, le=2, description="where it comes to rest, to the left of the path")
+    ] = 0.0
+    radius: Annotated[Length, Field(gt=0, le=0.5, description="of the sphere")] = 0.10
+    speed: Annotated[Speed, Field(gt=0, le=0.1, description="how fast it rolls")] = 0.005
 
 
 class BellyStone(Parameters):
     """A stone between the tracks, and how high it comes to stand above their soles; the belly is 20 mm up."""
 
-    height: Annotated[Length, Field(gt=0.02, le=0.05)] = 0.03
-    radius: Annotated[Length, Field(ge=0.025, le=0.042)] = 0.04
+    height: Annotated[
+        Length, Field(gt=0.02, le=0.05, description="how far it comes to stand above the soles of the tracks")
+    ] = 0.03
+    radius: Annotated[Length, Field(ge=0.025, le=0.042, description="of the sphere")] = 0.04
 
 
 class Rise(Parameters):
     """How high the ground rises where the model has none, how wide, and where along the planned path."""
 
-    ahead: Annotated[Length, Field(ge=0, le=5)] = 0.5
-    aside: Annotated[Length, Field(ge=-1, le=1)] = 0.0
-    height: Annotated[Length, Field(gt=0, le=0.2)] = 0.04
-    radius: Annotated[Length, Field(gt=0.05, le=2)] = 0.35
+    ahead: Annotated[
+        Length, Field(ge=0, le=5, description="its top, along the planned path ahead of the rover")
+    ] = 0.5
+    aside: Annotated[Length, Field(ge=-1, le=1, description="its top, to the left of the path")] = 0.0
+    height: Annotated[Length, Field(gt=0, le=0.2, description="of its top above the model")] = 0.04
+    radius: Annotated[Length, Field(gt=0.05, le=2, description="of its foot")] = 0.35
 
 
 R = TypeVar("R", bound=Parameters)

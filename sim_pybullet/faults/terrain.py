@@ -22,34 +22,38 @@ DRIVEN_M = 0.002  # travel of both belts together; after so much of it, the grou
 class Slip(Parameters):
     """The share of all belt travel that is lost, whatever the ground."""
 
-    slip: Annotated[Fraction, Field(gt=0, le=0.95)] = 0.4
+    slip: Annotated[Fraction, Field(gt=0, le=0.95, description="travel lost, of all")] = 0.4
 
 
 class Drift(Parameters):
     """How far the rover slides to its left (negative: right) per way driven."""
 
-    drift: Annotated[Fraction, Field(ge=-0.5, le=0.5)] = 0.15
+    drift: Annotated[Fraction, Field(ge=-0.5, le=0.5, description="slide to the left, per way driven")] = 0.15
 
 
 class Disc(Parameters):
     """Where the patch lies: how far along the path ahead of the rover, how far to its left, how wide."""
 
-    ahead: Annotated[Length, Field(ge=0, le=5)] = 0.25
-    aside: Annotated[Length, Field(ge=-1, le=1)] = 0.0
-    radius: Annotated[Length, Field(gt=0, le=3)] = 0.35
+    ahead: Annotated[
+        Length, Field(ge=0, le=5, description="its middle, along the planned path ahead of the rover")
+    ] = 0.25
+    aside: Annotated[Length, Field(ge=-1, le=1, description="its middle, to the left of the path")] = 0.0
+    radius: Annotated[Length, Field(gt=0, le=3, description="of the patch")] = 0.35
 
 
 class Smoothness(Disc):
     """A disc of ground with this friction, turned on with this share of the ideal yaw rate."""
 
-    friction: Annotated[Fraction, Field(gt=0, le=1)] = 0.2
-    yaw_efficiency: Annotated[Fraction, Field(gt=0, le=1)] = 0.25
+    friction: Annotated[Fraction, Field(gt=0, le=1, description="of the ground in it")] = 0.2
+    yaw_efficiency: Annotated[
+        Fraction, Field(gt=0, le=1, description="yaw rate, of that of ideal tracks")
+    ] = 0.25
 
 
 class Depth(Disc):
     """A disc of ground in which this share of all belt travel is lost."""
 
-    slip: Annotated[Fraction, Field(gt=0, le=1)] = 0.9
+    slip: Annotated[Fraction, Field(gt=0, le=1, description="travel lost, of all")] = 0.9
 
 
 class SlipBurst(WorldFault[Slip]):

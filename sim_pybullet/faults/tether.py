@@ -22,30 +22,34 @@ DRIVEN_M = 0.01
 class Snag(Parameters):
     """Where the tether is caught, how hard it pulls once stretched by `give`, what the spool feels of it."""
 
-    behind: Annotated[Length, Field(gt=0, le=20)] = 0.4
-    pull: Annotated[Force, Field(gt=0, le=50)] = 4.0
-    give: Annotated[Length, Field(gt=0, le=1)] = 0.1
-    felt: Annotated[Fraction, Field(ge=0, le=1)] = 0.5
+    behind: Annotated[Length, Field(gt=0, le=20, description="where it is caught, behind the rover")] = 0.4
+    pull: Annotated[Force, Field(gt=0, le=50, description="how hard it pulls once stretched by `give`")] = 4.0
+    give: Annotated[Length, Field(gt=0, le=1, description="how far it stretches for `pull`")] = 0.1
+    felt: Annotated[
+        Fraction, Field(ge=0, le=1, description="share of the pull that the sensor at the spool feels")
+    ] = 0.5
 
 
 class Wrap(Parameters):
     """Where the tether lies round a rock, how far round, and the friction between them."""
 
-    behind: Annotated[Length, Field(gt=0, le=20)] = 0.4
-    angle: Annotated[Angle, Field(gt=0, le=math.radians(1080))] = math.radians(450)
-    friction: Annotated[Fraction, Field(gt=0, le=1)] = 0.5
+    behind: Annotated[Length, Field(gt=0, le=20, description="where the rock is, behind the rover")] = 0.4
+    angle: Annotated[
+        Angle, Field(gt=0, le=math.radians(1080), description="how far the tether lies round it")
+    ] = math.radians(450)
+    friction: Annotated[Fraction, Field(gt=0, le=1, description="between rock and tether")] = 0.5
 
 
 class Shortage(Parameters):
     """How much tether is left on the spool."""
 
-    left: Annotated[Length, Field(ge=0, le=100)] = 0.1
+    left: Annotated[Length, Field(ge=0, le=100, description="tether left on the spool")] = 0.1
 
 
 class Loop(Parameters):
     """How much more tether lies out than the way takes."""
 
-    loop: Annotated[Length, Field(gt=0, le=20)] = 0.5
+    loop: Annotated[Length, Field(gt=0, le=20, description="tether out beyond what the way takes")] = 0.5
 
 
 class _Pulling:
@@ -112,4 +116,4 @@ TETHER_SNAG = spec("tether_snag", TetherSnag, Snag, SNAG, "tether")
 TETHER_CAPSTAN = spec("tether_capstan", TetherCapstan, Wrap, SNAG, "tether", graded=True)
 SPOOL_JAM = spec("spool_jam", SpoolJam, Nothing, SNAG, "tether")
 TETHER_SHORT = spec("tether_short", TetherShort, Shortage, SNAG, "tether")
-TETHER_SLACK = spec("tether_slack", TetherSlack, Loop, Hypothesis.NOMINAL, "tether")
+TETHER_SLACK = spec("tether_slack", TetherSlack, Loop, None, "tether")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Generic, TypeVar
+from typing import TYPE_CHECKING, Annotated, Generic, Literal, TypeVar
 
 from pydantic import Field
 
@@ -20,7 +20,7 @@ ASTRAY_M = 0.0005  # turned otherwise than commanded by so much, a motor's fault
 class Side(Parameters):
     """Which track."""
 
-    side: Annotated[str, Field(pattern="^(left|right)$")]
+    side: Annotated[Literal["left", "right"], Field(description="which track")]
 
     @property
     def index(self) -> int:
@@ -30,14 +30,16 @@ class Side(Parameters):
 class Weakness(Side):
     """Which track, and how fast its motor turns compared with what is commanded."""
 
-    factor: Annotated[Fraction, Field(gt=0, lt=1)] = 0.6
+    factor: Annotated[Fraction, Field(gt=0, lt=1, description="speed, of the commanded one")] = 0.6
 
 
 class Runaway(Side):
     """Which track, how long its motor keeps turning after a drive, and how fast compared with the command."""
 
-    lasts: Annotated[Duration, Field(gt=0, le=120)] = 15.0
-    factor: Annotated[Fraction, Field(ge=1, le=3)] = 1.0
+    lasts: Annotated[Duration, Field(gt=0, le=120, description="how long it keeps turning after a drive")] = (
+        15.0
+    )
+    factor: Annotated[Fraction, Field(ge=1, le=3, description="speed, of the commanded one")] = 1.0
 
 
 S = TypeVar("S", bound=Side)

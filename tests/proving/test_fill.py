@@ -12,7 +12,7 @@ from executive.app import RunOptions, run
 from proving.coverage.bases import candidates
 from proving.coverage.coverage import cover
 from proving.coverage.fill import file_name, needed
-from proving.coverage.fill_command import COMMAND
+from proving.coverage.fill_command import fill as command_line
 from proving.coverage.items import Item
 from proving.coverage.recipes import NEEDED, RECIPES, of_kind, specs
 from proving.coverage.search import Proposal
@@ -69,7 +69,7 @@ def filled(suite, tmp_path_factory):
     told = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("click.echo", lambda text, **_: told.append(text))
-        assert COMMAND.main(arguments, standalone_mode=False) == 0
+        assert command_line.main(arguments, standalone_mode=False) == 0
     return json.loads(told[0])
 
 

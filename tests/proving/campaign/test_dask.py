@@ -58,7 +58,8 @@ def test_a_killed_worker_loses_no_case_and_cases_come_out_as_locally(cluster, wr
     assert summary["cases"] == 8
 
 
-def test_an_address_where_nobody_answers_is_told(write, capsys):
+def test_an_address_where_nobody_answers_is_told(write, capsys, monkeypatch):
+    monkeypatch.setattr("proving.campaign.dask_engine.CONNECT_S", 1)
     file = write(runs=1)
     options = ["--engine", "dask", "--address", "tcp://127.0.0.1:9", "--quiet"]
     assert invoke(["campaign", str(file), *options]) == 2
