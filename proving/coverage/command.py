@@ -61,6 +61,3 @@ def coverage(
         write(found, output)
     click.echo(json.dumps(as_data(found), indent=2) if as_json else as_text(found), nl=as_json)
     return verdict(found, wanted)
-
-
-COMMAND = coverage

@@ -53,6 +53,3 @@ def minimise(
     used_up = ", all there were: it may be smaller yet" if made.exhausted else ""
     click.echo(f"{file} still fails with {made.failure}, after {made.runs} runs{used_up}")
     return 0
-
-
-COMMAND = minimise

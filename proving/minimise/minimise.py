@@ -6,16 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import yaml
 
-from executive.errors import ConfigError
 from executive.scenario import resolve_scenario
 from proving.engine.server import ForkServer
 from proving.minimise.failure import Failure
-from proving.minimise.reductions import reduce_all, strip
-from proving.minimise.trier import Data, Trier, resolved, written
+from proving.minimise.reductions import reduce_all
+from proving.minimise.trier import Trier
+from proving.scenario_data import Data, stripped, written
 
 MOST_RUNS = 200
 
@@ -68,15 +67,5 @@ def minimise(
         failure = trier.begin(before)
         if failure is not None:
             reduce_all(trier)
-            strip(trier, _same_as(resolved(trier.best).dump()))
-    return Minimised(failure, before, trier.best, trier.runs, tuple(trier.steps), trier.exhausted)
-
-
-def _same_as(text: str) -> Callable[[Data], bool]:
-    def same(data: Any) -> bool:
-        try:
-            return resolved(data).dump() == text
-        except ConfigError:
-            return False
-
-    return same
+    after = trier.best if failure is None else stripped(trier.best)
+    return Minimised(failure, before, after, trier.runs, tuple(trier.steps), trier.exhausted)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from executive import plugins
@@ -11,17 +10,15 @@ from executive.fault_entries import RESERVED
 from executive.faults import FaultSpec
 from executive.units import DURATION, UnitError, quantity, split
 from proving.minimise.fewer import fewer
-from proving.minimise.trier import Data, Trier
+from proving.minimise.trier import Trier
+from proving.scenario_data import Data, Keys, get, replaced, without
 
-Keys = tuple[str | int, ...]
 QUIET = ("roughness", "added_roughness", "rocks", "craters", "slope", "position_error", "pixel_sigma")
 """What makes a world eventful by its amount."""
 NEUTRAL_ONE = ("factor", "efficiency", "scale", "advance")
 """Parts of names of parameters that change nothing at 1; all others are taken to change nothing at 0."""
 HALVINGS = 5
 SHORTEST_S = 1.0
-NEEDED = ("scenario", "mission", "faults", "waypoints")
-"""What a file cannot do without."""
 
 
 def reduce_all(trier: Trier) -> None:
@@ -51,7 +48,7 @@ def world(trier: Trier) -> None:
         if isinstance(value, list):
             _fewer(trier, keys, str(keys[-1]))
         elif keys[-1] in QUIET:
-            trier.keeps(_with(trier.best, keys, _zero(value)), f"no {keys[-1]}")
+            trier.keeps(replaced(trier.best, keys, _zero(value)), f"no {keys[-1]}")
 
 
 def each_fault(trier: Trier) -> None:
@@ -79,7 +76,7 @@ def _duration(trier: Trier, index: int) -> None:
     lasts_s = _lasts_s(trier, index)
     for _ in range(HALVINGS):
         lasts_s = round(lasts_s / 2)
-        shorter = _with(trier.best, keys, f"{lasts_s} s")
+        shorter = replaced(trier.best, keys, f"{lasts_s} s")
         what = f"{_name(trier, index)} for {lasts_s} s"
         if lasts_s < SHORTEST_S or not trier.keeps(shorter, what):
             return
@@ -92,7 +89,7 @@ def _severity(trier: Trier, index: int) -> None:
         for weaker in _weaker(parameter, value):
             keys: Keys = ("faults", index, kind, parameter)
             what = f"{_name(trier, index)} with {parameter} {weaker}"
-            if not trier.keeps(_with(trier.best, keys, weaker), what):
+            if not trier.keeps(replaced(trier.best, keys, weaker), what):
                 break
 
 
@@ -112,20 +109,20 @@ def _weaker(parameter: str, value: Any) -> Iterator[Any]:
 
 
 def _fewer(trier: Trier, keys: Keys, noun: str, least: int = 0) -> None:
-    items = _get(trier.best, keys)
+    items = get(trier.best, keys)
     if not isinstance(items, list):
         return
 
     def still(rest: list[Any]) -> bool:
-        gone = len(_get(trier.best, keys)) - len(rest)
-        return trier.keeps(_with(trier.best, keys, rest), f"{gone} {noun}{'s' if gone > 1 else ''} less")
+        gone = len(get(trier.best, keys)) - len(rest)
+        return trier.keeps(replaced(trier.best, keys, rest), f"{gone} {noun}{'s' if gone > 1 else ''} less")
 
     fewer(items, still, least)
 
 
 def _defaults(trier: Trier, keys: Keys) -> None:
     """Leave out what is said here, all of it or, if that matters, part by part."""
-    value = _get(trier.best, keys)
+    value = get(trier.best, keys)
     if value is None or _without(trier, keys, f"without {' '.join(map(str, keys))}"):
         return
     for key in list(value) if isinstance(value, dict) else ():
@@ -133,33 +130,9 @@ def _defaults(trier: Trier, keys: Keys) -> None:
 
 
 def _without(trier: Trier, keys: Keys, what: str) -> bool:
-    if _get(trier.best, keys) is None:
+    if get(trier.best, keys) is None:
         return False
-    data = copy.deepcopy(trier.best)
-    del _get(data, keys[:-1])[keys[-1]]
-    return trier.keeps(data, what)
-
-
-def strip(trier: Trier, same: Callable[[Data], bool]) -> None:
-    """Leave out of the best case what goes without saying: `same` tells that nothing changes by it."""
-
-    def visit(keys: Keys) -> None:
-        value = _get(trier.best, keys)
-        data = copy.deepcopy(trier.best)
-        del _get(data, keys[:-1])[keys[-1]]
-        if same(data):
-            trier.best = data
-        elif isinstance(value, dict):
-            for key in list(value):
-                visit((*keys, key))
-
-    for key in [key for key in trier.best if key not in NEEDED]:
-        visit((key,))
-    for key in [key for key in trier.best["mission"] if key not in NEEDED]:
-        visit(("mission", key))
-    for index, entry in enumerate(trier.best.get("faults", ())):
-        for key in [key for key in entry if key != "for"]:
-            visit(("faults", index, key))
+    return trier.keeps(without(trier.best, keys), what)
 
 
 def _leaves(data: Any, keys: Keys) -> Iterator[tuple[Keys, Any]]:
@@ -172,24 +145,6 @@ def _leaves(data: Any, keys: Keys) -> Iterator[tuple[Keys, Any]]:
 
 def _zero(value: Any) -> Any:
     return f"0 {split(value)[1]}" if isinstance(value, str) else 0 if isinstance(value, int) else 0.0
-
-
-def _get(data: Any, keys: Keys) -> Any:
-    """What stands at a place, None if nothing does."""
-    for key in keys:
-        if isinstance(data, dict):
-            data = data.get(key)
-        elif isinstance(data, list) and isinstance(key, int) and key < len(data):
-            data = data[key]
-        else:
-            return None
-    return data
-
-
-def _with(data: Data, keys: Keys, value: Any) -> Data:
-    changed = copy.deepcopy(data)
-    _get(changed, keys[:-1])[keys[-1]] = value
-    return changed
 
 
 def _kind(entry: Data) -> str:

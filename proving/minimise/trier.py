@@ -6,19 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from shutil import rmtree
-from typing import Any
 
-import yaml
-
-from executive.config.source import read_text
 from executive.errors import ConfigError
-from executive.scenario import ResolvedScenario, resolve_source
+from executive.scenario import ResolvedScenario
 from proving.engine import Case, Limits, settle
 from proving.engine.server import ForkServer
 from proving.engine.supervisor import run_alone
 from proving.minimise.failure import Failure, failure_of
+from proving.scenario_data import Data, resolved, written
 
-Data = dict[str, Any]
 WALL_SLOWER, WALL_GRACE_S = 10.0, 60.0
 
 
@@ -91,21 +87,3 @@ class Trier:
         result = settle(ending)
         rmtree(folder, ignore_errors=True)
         return failure_of(ending, result, scenario), result, ending.wall_s
-
-
-def resolved(data: Data) -> ResolvedScenario:
-    """The scenario that data stand for; ConfigError with every problem."""
-    return resolve_source(read_text(written(data), "case.yaml"))
-
-
-class _Dumper(yaml.SafeDumper):
-    """Small mappings stand on their line, as people write scenarios."""
-
-    def ignore_aliases(self, data: Any) -> bool:
-        return True
-
-
-def written(data: Data) -> str:
-    """A scenario's data as YAML."""
-    shape: Data = {"sort_keys": False, "default_flow_style": None, "width": 110, "allow_unicode": True}
-    return str(yaml.dump(data, Dumper=_Dumper, **shape))

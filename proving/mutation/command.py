@@ -66,6 +66,3 @@ def mutate(
     if short:
         click.echo(f"got {score.ratio:.1%} of the mutants noticed, expected at least {wanted:.0%}", err=True)
     return int(short or bool(problems))
-
-
-COMMAND = mutate

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
+    from proving.coverage.coverage import Coverage
     from proving.suite.run import Tested
 
 _COLOURS = {"passed": "green", "expected failure": "yellow"}
@@ -41,6 +42,7 @@ _COLOURS = {"passed": "green", "expected failure": "yellow"}
 )
 @click.option("--coverage", is_flag=True, help="Say afterwards what the suite has exercised.")
 @click.option("--coverage-min", metavar="SHARE", help="The same, and fail below this share, such as 90%.")
+@click.option("--excuses", type=click.Path(path_type=Path), help="The same, and what cannot happen, and why.")
 @click.option("--json", "as_json", is_flag=True, help="Print the verdicts as JSON and nothing else.")
 def test(
     paths: tuple[Path, ...],
@@ -52,6 +54,7 @@ def test(
     wall_s: float,
     coverage: bool,
     coverage_min: str | None,
+    excuses: Path | None,
     as_json: bool,
 ) -> int:
     """Run scenarios as tests: files, bare names, and all in a folder. Exit 0 if every verdict is good.
@@ -60,12 +63,14 @@ def test(
 
     Example: longarm test scenarios/ -j 2 --tier geometric --junit results.xml
     """
+    from proving.coverage.command import share
+    from proving.coverage.table import as_data, as_text
     from proving.engine import Limits
     from proving.suite.collect import collect
     from proving.suite.junit import write_junit
     from proving.suite.run import SuiteOptions, run_suite
 
-    covering = _coverage_command() if coverage or coverage_min else None
+    least = share(coverage_min, "--coverage-min")
     collected = collect(paths, seed, tier)
     options = SuiteOptions(out, slots, seed, tier, Limits(wall_s=wall_s))
     rows: list[Tested] = []
@@ -77,26 +82,26 @@ def test(
     rows.sort(key=lambda row: order.index(row.collected.name))
     if junit is not None:
         write_junit(junit, rows)
+    covered: Coverage | None = None
+    code = 0
+    if coverage or excuses or least is not None:
+        covered, code = _coverage(rows, excuses, least)
     if as_json:
-        click.echo(json.dumps({"counts": _counts(rows), "scenarios": [r.to_json() for r in rows]}, indent=2))
+        told = {"counts": _counts(rows), "scenarios": [row.to_json() for row in rows]}
+        click.echo(json.dumps(told | ({"coverage": as_data(covered)} if covered else {}), indent=2))
     else:
         click.echo(", ".join(f"{count} {word}" for word, count in _counts(rows).items()))
-    covered = 0
-    if covering is not None:
-        arguments = [*(str(row.folder) for row in rows), *(["--min", coverage_min] if coverage_min else [])]
-        covered = covering.main([*arguments, *(["--json"] if as_json else [])], standalone_mode=False) or 0
-    return 0 if all(row.verdict.good for row in rows) and not covered else 1
+        click.echo(as_text(covered) if covered else "", nl=False)
+    return 0 if all(row.verdict.good for row in rows) and not code else 1
 
 
-def _coverage_command() -> click.Command:
-    """`longarm coverage`, which judges run folders."""
-    from executive import plugins
+def _coverage(rows: Sequence[Tested], excuses: Path | None, least: float | None) -> tuple[Coverage, int]:
+    """What the runs have shown, and the exit code for it."""
+    from proving.coverage.command import verdict
+    from proving.coverage.coverage import cover
 
-    if "coverage" not in plugins.found(plugins.COMMANDS):
-        raise click.UsageError("--coverage needs the command `longarm coverage`, which is not installed")
-    command = plugins.load(plugins.COMMANDS, "coverage", click.Command)
-    assert isinstance(command, click.Command)  # noqa: S101  (load has checked)
-    return command
+    found = cover([row.folder for row in rows], excuses)
+    return found, verdict(found, least)
 
 
 def _tell(row: Tested) -> None:

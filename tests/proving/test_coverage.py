@@ -12,7 +12,7 @@ from executive.telemetry import events
 from executive.telemetry.history import At
 from executive.tree.load import load_tree_text
 from proving.coverage.abilities import takes_time
-from proving.coverage.command import COMMAND
+from proving.coverage.command import coverage as command_line
 from proving.coverage.coverage import cover
 from proving.coverage.drawing import page
 from proving.coverage.items import Item
@@ -190,7 +190,7 @@ def test_a_folder_without_runs_is_named(tmp_path):
 
 
 def command(capsys, *arguments):
-    code = COMMAND.main([str(a) for a in arguments], standalone_mode=False)
+    code = command_line.main([str(a) for a in arguments], standalone_mode=False)
     told = capsys.readouterr()
     return code, told.out, told.err
 
@@ -206,7 +206,7 @@ def test_the_threshold_fails_what_is_below_it(runs, capsys):
 @pytest.mark.parametrize("least", ["much", "130 %", "90 m"])
 def test_a_threshold_that_is_no_share_is_refused(runs, least):
     with pytest.raises(ConfigError, match="--min:1:1: got "):
-        COMMAND.main([str(runs), "--min", least], standalone_mode=False)
+        command_line.main([str(runs), "--min", least], standalone_mode=False)
 
 
 def test_text_and_json_agree(runs, capsys):

@@ -11,7 +11,7 @@ from executive.app import RunOptions, run
 from executive.errors import ConfigError
 from executive.scenario import resolve_scenario
 from proving.engine import Case, CaseClass, Ending
-from proving.minimise.command import COMMAND
+from proving.minimise.command import minimise as command_line
 from proving.minimise.failure import Failure, failure_of
 from proving.minimise.fewer import fewer
 from proving.minimise.minimise import minimise
@@ -168,7 +168,7 @@ def test_a_run_folder_is_minimised_from_its_own_scenario(suite, tmp_path, capsys
     file.write_text(text + "  - encoder_scale: {side: left, factor: 101 %}\n")
     run(file, RunOptions(out=tmp_path / "run", bar=False, report=False))
     output = tmp_path / "minimal.yaml"
-    assert COMMAND.main([str(tmp_path / "run"), "-o", str(output), "--json"], standalone_mode=False) == 0
+    assert command_line.main([str(tmp_path / "run"), "-o", str(output), "--json"], standalone_mode=False) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["sizes"]["faults"] == {"before": 2, "after": 1}
     data = yaml.safe_load(output.read_text())
@@ -180,7 +180,7 @@ def test_a_run_folder_is_minimised_from_its_own_scenario(suite, tmp_path, capsys
 
 def test_a_case_that_does_not_fail_is_left_alone(suite, tmp_path, capsys):
     output = tmp_path / "minimal.yaml"
-    assert COMMAND.main([str(suite / "plain.yaml"), "-o", str(output)], standalone_mode=False) == 1
+    assert command_line.main([str(suite / "plain.yaml"), "-o", str(output)], standalone_mode=False) == 1
     assert "expected one that does" in capsys.readouterr().err
     assert not output.exists()
 

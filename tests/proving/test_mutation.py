@@ -12,7 +12,7 @@ from executive.errors import ConfigError
 from executive.pool_plugins import load_strategies
 from executive.tree.catalogue import node_types
 from executive.tree.load import load_tree
-from proving.mutation.command import COMMAND
+from proving.mutation.command import mutate as command_line
 from proving.mutation.equivalents import Equivalents, read_equivalents
 from proving.mutation.mutants import Forest, Mutant, changed, dumped
 from proving.mutation.mutate import MutationOptions, chosen, mutate
@@ -207,12 +207,12 @@ def test_an_equivalent_mutant_that_is_not_made_is_a_problem_only_if_all_are(tmp_
 
 def test_the_command_fails_below_its_threshold_and_prints_survivors_as_diffs(suite, capsys):
     arguments = ["navigate", str(suite / "plain.yaml"), "--only", "cabin_reposing", "--quiet"]
-    code = COMMAND.main([*arguments, "--min", "85 %"], standalone_mode=False)
+    code = command_line.main([*arguments, "--min", "85 %"], standalone_mode=False)
     told = capsys.readouterr()
     assert code == 1
     assert "got 0.0% of the mutants noticed, expected at least 85%" in told.err
     assert "survived: cabin_reposing/sequence: drop show_markers (1) (no scenario reaches it)" in told.out
     assert "-  - show_markers: {pose: '{pose}'}" in told.out
-    assert COMMAND.main([*arguments, "--json"], standalone_mode=False) == 0
+    assert command_line.main([*arguments, "--json"], standalone_mode=False) == 0
     data = json.loads(capsys.readouterr().out)
     assert (data["score"], data["killed"], data["survived"]) == (0.0, 0, len(data["mutants"]))

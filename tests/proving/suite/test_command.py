@@ -70,9 +70,13 @@ def test_a_file_that_is_no_scenario_is_told(folder, capsys):
     assert 'other.yaml:1:1: got no "scenario"' in capsys.readouterr().err
 
 
-def test_coverage_needs_its_command(scenario, capsys, monkeypatch):
-    monkeypatch.setattr("executive.plugins.found", lambda group: {})
-    from proving.suite.command import test as command
-
-    with pytest.raises(Exception, match="needs the command `longarm coverage`"):
-        command.main([str(scenario("one")), "--coverage"], standalone_mode=False)
+def test_coverage_is_told_after_the_verdicts_and_can_fail_the_suite(scenario, folder, capsys):
+    scenario("one")
+    assert invoke(["test", "one.yaml", "--coverage", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert 0.0 < told["coverage"]["total"]["ratio"] < 0.9
+    assert invoke(["test", "one.yaml", "--coverage-min", "90 %"]) == 1
+    told = capsys.readouterr()
+    assert "1 passed\ncoverage " in told.out
+    assert "expected at least 90%" in told.err
+    assert invoke(["test", "one.yaml", "--coverage-min", "much"]) == 2
