@@ -174,11 +174,12 @@ class _Changes:
         self._outcomes[path] = outcome
 
     def _changed(self) -> Iterator[tuple[str, Status]]:
+        last, ended_again = self._last, self._outcomes
         for path, node in self._run.paths.items():
-            ended_again = path in self._outcomes
-            if node.status is not self._last[path] or ended_again:
-                self._last[path] = node.status
-                yield path, node.status
+            status = node.status
+            if status is not last[path] or path in ended_again:
+                last[path] = status
+                yield path, status
 
     def _event(self, path: str, status: Status) -> events.NodeChange:
         outcome = self._outcomes.get(path)

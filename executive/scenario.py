@@ -137,8 +137,9 @@ def resolve(source: Source) -> ResolvedScenario:
     tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
     inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
     if tree is not None and faults:
-        problems.found.extend(_unknown_nodes(source, faults, tree))
-        problems.found.extend(_unknown_targets(source, faults, tree))
+        names = _node_names(tree)
+        problems.found.extend(_unknown_nodes(source, faults, tree, names))
+        problems.found.extend(_unknown_targets(source, faults, tree, names))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
@@ -267,19 +268,21 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
     return values
 
 
-def _unknown_nodes(source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec) -> list[Problem]:
+def _unknown_nodes(
+    source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec, names: set[str]
+) -> list[Problem]:
     """Faults that wait for a node which neither the tree nor a strategy has: they could never fire."""
     waited: list[tuple[Place, str]] = [
         (("faults", i, "from", "node"), f.start.node)
         for i, f in enumerate(faults)
         if f.start.node is not None
     ]
-    return _strangers(
-        source, waited, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
-    )
+    return _strangers(source, waited, names, f"the node {{}}, which the tree {tree.name} does not have")
 
 
-def _unknown_targets(source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec) -> list[Problem]:
+def _unknown_targets(
+    source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec, names: set[str]
+) -> list[Problem]:
     """Faults of a node, a value or a strategy that is not there."""
     nodes: list[tuple[Place, str]] = []
     values: list[tuple[Place, str]] = []
@@ -292,9 +295,7 @@ def _unknown_targets(source: Source, faults: tuple[ResolvedFault, ...], tree: Tr
                 found.append((("faults", i, fault.spec.name, parameter), value))
     known = set(plugins.found(plugins.STRATEGIES))
     return [
-        *_strangers(
-            source, nodes, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
-        ),
+        *_strangers(source, nodes, names, f"the node {{}}, which the tree {tree.name} does not have"),
         *_strangers(
             source, values, _value_names(tree), f"the value {{}}, which the tree {tree.name} does not have"
         ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -113,8 +114,13 @@ class Source:
 def read(path: Path, shown: str | None = None) -> Source:
     """Read a file; ConfigError when it cannot be read as one YAML document at all."""
     name = shown if shown is not None else str(path)
-    source = read_text(_text(path, Mark(name, 1, 1)), name)
-    return replace(source, folders={(): path.parent})
+    return replace(_parsed(_text(path, Mark(name, 1, 1)), name), folders={(): path.parent})
+
+
+@lru_cache(256)
+def _parsed(text: str, name: str) -> Source:
+    """Trees are read again and again in a process; what is read is never altered in place."""
+    return read_text(text, name)
 
 
 def read_text(text: str, name: str) -> Source:

@@ -42,7 +42,7 @@ def judge(formula: Formula, trace: Trace) -> Judgement:
     known = math.isfinite(margin)
     return Judgement(
         met,
-        margin if known else None,
+        margin + 0.0 if known else None,  # not -0.0
         _unit(formula, trace, margin) if known else None,
         None if met else decisions.time_s(decision),
         "; ".join(warnings(formula, trace)) or None,

@@ -23,7 +23,8 @@ from typing import Any
 from executive import plugins, units
 from executive.backends import BackendSpec
 from executive.clock import Stopwatch
-from executive.errors import PluginError
+from executive.errors import LongarmError, PluginError
+from executive.pool_plugins import load_strategies, strategy_trees
 from proving.engine import child
 from proving.engine.case import Case
 
@@ -178,6 +179,8 @@ def _preload() -> None:
                 plugin = plugins.load(group, name)
                 if isinstance(plugin, BackendSpec):
                     plugin.preload()
+    with suppress(LongarmError):
+        strategy_trees(load_strategies())
     units.factor("m")  # half a second the first time
 
 

@@ -48,13 +48,17 @@ class Loss(Parameters):
 
 
 class Settling(Parameters):
-    """How far the lander sinks, and how far it leans over towards a direction (from site x, to the left)."""
+    """How far the lander sinks, leans over towards a direction, and turns to the left."""
 
     sinks: Annotated[Length, Field(ge=0, le=0.2, description="how far")] = 0.01
     leans: Annotated[Angle, Field(ge=0, le=math.radians(5), description="how far")] = math.radians(0.3)
     towards: Annotated[Angle, Field(description="direction that it leans to, from site x, left positive")] = (
         0.0
     )
+    twists: Annotated[
+        Angle,
+        Field(ge=-math.radians(5), le=math.radians(5), description="how far, left positive"),
+    ] = math.radians(0.2)
 
 
 def _axes(sim: WorldFaults) -> tuple[HeadAxis, HeadAxis]:
@@ -128,10 +132,15 @@ class LanderSettling(WorldFault[Settling]):
     """The lander sinks and leans, and with it the frame that every fix is measured in; it stays so."""
 
     def act(self, sim: WorldFaults, level: float) -> None:
+        twist_rad = self.p.twists * level
         lean_rad, c, s = self.p.leans * level, math.cos(self.p.towards), math.sin(self.p.towards)
         sim.see(
             lander_shift_m=(0.0, 0.0, -self.p.sinks * level),
-            lander_turn_rad=(-s * lean_rad, c * lean_rad, 0.0),  # about the axis across: over, not round
+            lander_turn_rad=(
+                -s * lean_rad,
+                c * lean_rad,
+                twist_rad,
+            ),  # about the axis across: over, not round
         )
 
     def shows(self, sim: WorldFaults, done: Tally) -> bool:

@@ -71,19 +71,18 @@ class Cloud(WorldFault[Clouds]):
 
     def __init__(self, parameters: Clouds) -> None:
         super().__init__(parameters)
-        self._began_s: float | None = None
+        self._began_s = 0.0
 
     def act(self, sim: WorldFaults, level: float) -> None:
+        if sim.world.seeing.clouds == 1.0:
+            self._began_s = sim.world.clock.now_s
         self._shade(sim)
 
     def step(self, sim: WorldFaults) -> None:
         self._shade(sim)
 
     def _shade(self, sim: WorldFaults) -> None:
-        now_s = sim.world.clock.now_s
-        if self._began_s is None or self.level == 0.0:
-            self._began_s = now_s
-        phase = 2 * math.pi * (now_s - self._began_s) / self.p.period
+        phase = 2 * math.pi * (sim.world.clock.now_s - self._began_s) / self.p.period
         sim.see(clouds=1.0 - self.p.depth * self.level * (1 - math.cos(phase)) / 2)
 
     def shows(self, sim: WorldFaults, done: Tally) -> bool:
