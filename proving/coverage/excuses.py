@@ -22,9 +22,10 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from executive.config.find import shown
-from executive.config.source import Mark, read
+from executive.config.source import Mark, Source, read
 from executive.config.validate import Strict, guess, listed, parse
 from executive.errors import Problem
+from executive.file_kinds import FileKind
 from proving.coverage.items import KINDS, Item
 from proving.coverage.seen import Seen
 
@@ -96,7 +97,11 @@ class Excuses:
 
 def read_excuses(path: Path) -> Excuses:
     """The file's excuses; ConfigError with every problem in it."""
-    source = read(path, shown(path))
+    return excuses_in(read(path, shown(path)))
+
+
+def excuses_in(source: Source) -> Excuses:
+    """The same from a file already read."""
     file = parse(source, CoverageFile)
     return Excuses(
         tuple((entry, source.at(("cannot_happen", i))) for i, entry in enumerate(file.cannot_happen))
@@ -120,3 +125,6 @@ def _about_nothing(excuse: Excuse, word: str | None, items: tuple[Item, ...]) ->
         words = sorted({i.word for i in items if i.kind == excuse.kind and fnmatchcase(i.name, name)})
         return f'got the outcome "{word}" of {name}, expected {listed(words)}{guess(word, words)}'
     return f'got the {excuse.kind} "{name}", expected one that the runs could show{guess(name, same)}'
+
+
+KIND = FileKind("coverage", excuses_in, CoverageFile.model_json_schema)

@@ -17,7 +17,7 @@ QUIET = ("roughness", "added_roughness", "rocks", "craters", "slope", "position_
 """What makes a world eventful by its amount."""
 NEUTRAL_ONE = ("factor", "efficiency", "scale", "advance")
 """Parts of names of parameters that change nothing at 1; all others are taken to change nothing at 0."""
-HALVINGS = 5
+HALVINGS = 4
 SHORTEST_S = 1.0
 
 

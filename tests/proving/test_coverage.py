@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from executive.cli import invoke
 from executive.errors import ConfigError, RecordError
 from executive.nodes import LEAVES
 from executive.telemetry import events
@@ -182,6 +183,14 @@ def test_a_bad_file_of_excuses_tells_everything_at_once(runs, tmp_path):
     first, second = caught.value.problems
     assert (first.line, second.line) == (3, 4)
     assert first.message == "got none, expected exactly one of node, strategy, phase, fault or hypothesis"
+
+
+def test_a_file_of_excuses_is_checked_and_has_a_schema(tmp_path, capsys):
+    file = excuses(tmp_path, "  - {node: '*', becuase: a typing mistake}\n")
+    assert invoke(["check", str(file)]) == 1
+    assert 'did you mean "because"?' in capsys.readouterr().out
+    assert invoke(["schema", "coverage"]) == 0
+    assert "cannot_happen" in json.loads(capsys.readouterr().out)["properties"]
 
 
 def test_a_folder_without_runs_is_named(tmp_path):

@@ -73,4 +73,4 @@ def test_two_runs_of_a_scenario_give_the_same_account(suite, tmp_path):
     cases = [Case(name, suite / "plain.yaml", tmp_path / name) for name in ("one", "two")]
     one, two = (account(ending, Terms()) for ending in run_cases(cases, 2))
     assert one == two
-    assert one.met == {"outcome is reached"}
+    assert "outcome is reached" in one.met
