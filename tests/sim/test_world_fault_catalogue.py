@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -402,3 +404,8 @@ def test_markers_are_told_one_way_only() -> None:
     for wrong in ({}, {"marker": 1, "markers": [1]}):
         with pytest.raises(ValueError, match="expected exactly one of them"):
             SPECS["led_off"].model.model_validate(wrong)
+
+
+def test_the_catalogue_is_told_without_the_physics() -> None:
+    code = "import sys, sim_pybullet.faults; sys.exit('pybullet' in sys.modules or 'cv2' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
