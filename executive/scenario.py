@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -275,7 +275,7 @@ def _unknown_nodes(source: Source, faults: tuple[ResolvedFault, ...], tree: Tree
         if f.start.node is not None
     ]
     return _strangers(
-        source, waited, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
+        source, waited, lambda: _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
     )
 
 
@@ -290,15 +290,13 @@ def _unknown_targets(source: Source, faults: tuple[ResolvedFault, ...], tree: Tr
             value = getattr(fault.parameters, parameter) if parameter else None
             if parameter and value is not None:
                 found.append((("faults", i, fault.spec.name, parameter), value))
-    known = set(plugins.found(plugins.STRATEGIES))
+    lacking = f"which the tree {tree.name} does not have"
     return [
+        *_strangers(source, nodes, lambda: _node_names(tree), f"the node {{}}, {lacking}"),
+        *_strangers(source, values, lambda: _value_names(tree), f"the value {{}}, {lacking}"),
         *_strangers(
-            source, nodes, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
+            source, strategies, lambda: set(plugins.found(plugins.STRATEGIES)), "the unknown strategy {}"
         ),
-        *_strangers(
-            source, values, _value_names(tree), f"the value {{}}, which the tree {tree.name} does not have"
-        ),
-        *_strangers(source, strategies, known, "the unknown strategy {}"),
     ]
 
 
@@ -315,7 +313,11 @@ def _value_names(tree: TreeSpec) -> set[str]:
     return {name for each in (*trees, *inner) for name in each.values}
 
 
-def _strangers(source: Source, named: list[tuple[Place, str]], known: set[str], got: str) -> list[Problem]:
+def _strangers(
+    source: Source, named: list[tuple[Place, str]], names: Callable[[], set[str]], got: str
+) -> list[Problem]:
+    """Names that are not known; what is, is found out only where one is given, for that takes long."""
+    known = names() if named else set()
     return [
         source.at(place).problem("got " + got.format(f'"{name}"') + guess(name, sorted(known)))
         for place, name in named
