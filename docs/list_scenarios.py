@@ -17,13 +17,14 @@ PAGE = SCENARIOS / "README.md"
 HEAD = """\
 # Scenarios
 
-Files to learn from, and the suite that every change must pass: `longarm test scenarios -j 2`, or `pytest scenarios/ -n 2`. One is
-run by its name (`longarm run motor_dead`), and told about afterwards by `longarm explain` with its run folder. Every fault of the
-catalogue (`longarm faults`) comes in at least one of them, and takes effect there. All keep the rover safe: never beyond the
-off-track margin, within the limits of tilt and tether, at rest at the end.
+Files to learn from, and the suite that every change must pass: `longarm test scenarios -j 2`, or
+`pytest scenarios/ -n 2`. One is run by itself with `longarm run` and its file, and told about afterwards by
+`longarm explain` and its run folder. Every fault of the catalogue (`longarm faults`) comes in at least one of
+them, and takes effect there. All keep the rover safe: never beyond the off-track margin, within the limits
+of tilt and tether, at rest at the end.
 
-*Expected to fail* are those of which the executive should make more than it does yet. That verdict is strict: once it does,
-the mark must go.
+*Expected to fail* are those of which the executive should make more than it does yet. That verdict is strict:
+once it does, the mark must go.
 
 This page is written by `python docs/list_scenarios.py` from the first lines of the files.
 """
