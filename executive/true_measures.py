@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from executive.rows import Row, row
-from executive.telemetry.events import SegmentEvent, Start, Telemetry
+from executive.telemetry.events import SegmentEvent, Start, Stop, Telemetry
 from executive.telemetry.history import History
 from executive.telemetry.truth import CrossTrack, Track, cross_track, driven_beyond_m
 from executive.types import Array
@@ -47,10 +47,15 @@ def below(text: str, measure: Measure, limit: float, history: History, world: Hi
 
 
 def at_rest(history: History, world: History) -> Row:
-    """Whether the rover stood still in the last tick, by truth and by what the tracks reported."""
+    """Whether the rover stood still in the last tick, by truth and by what the tracks reported.
+
+    Unknown (None) where the record breaks off, as of a killed process: nobody saw the end of that drive.
+    """
     told, track = history.last(Telemetry), Track.of(world)
     if told is None and track is None:
         return row("at rest at the end", None, warning="neither truth nor telemetry was recorded")
+    if history.last(Stop) is None:
+        return row("at rest at the end", None, warning="the record ends without a stop")
     moving = told is not None and told.event.moving
     speed_m_s = 0.0 if track is None else _last_speed_m_s(track, history)
     spare_m_s = None if track is None else REST_M_S - speed_m_s

@@ -6,7 +6,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from executive import plugins
-from executive.config.find import find
+from executive.config.find import find, names
 from executive.config.mission import load_mission
 from executive.config.source import Mark
 from executive.config.validate import listed
@@ -215,6 +215,18 @@ def test_files_of_the_working_folder_come_before_the_installed_ones(tmp_path, mo
     (working / "trees" / "go.yaml").touch()
     assert find("trees", "go.yaml", tmp_path, mark, working) == working / "trees" / "go.yaml"
     assert find("trees", "./working/trees/go.yaml", tmp_path, mark, working) == working / "trees" / "go.yaml"
+
+
+def test_bare_names_are_found_in_folders_within_too(tmp_path, monkeypatch):
+    mark = Mark("f", 1, 1)
+    monkeypatch.setattr("executive.config.find.INSTALLED", tmp_path / "installed")
+    inner = tmp_path / "scenarios" / "tracks"
+    inner.mkdir(parents=True)
+    (inner / "jam.yaml").touch()
+    assert find("scenarios", "jam", tmp_path, mark, tmp_path) == inner / "jam.yaml"
+    assert names("scenarios", tmp_path) == ["jam"]
+    (tmp_path / "scenarios" / "jam.yaml").touch()
+    assert find("scenarios", "jam", tmp_path, mark, tmp_path) == tmp_path / "scenarios" / "jam.yaml"
 
 
 words = st.sampled_from(

@@ -56,7 +56,8 @@ class Story:
             for time_s, told in sorted(events.items()):
                 for event in told if isinstance(told, list) else [told]:
                     recorder.write(event, time_s)
-            recorder.write(Stop(outcome), end_s)
+            if outcome is not None:
+                recorder.write(Stop(outcome), end_s)
         if truth is not None:
             with TruthRecorder(world) as recorder:
                 for time_s, event in sorted(truth.items()):
@@ -165,6 +166,11 @@ def test_a_rover_seen_at_rest_before_the_end_rests(tmp_path):
     """At rest the truth is sampled now and then only."""
     truth = {3.0: true(0.1), 4.0: true(0.2), 5.0: true(0.2)}
     assert Story(tmp_path, {20.0: reported()}, truth).safety()[3]["met"] is True
+
+
+def test_of_a_record_that_breaks_off_nobody_knows_whether_it_ended_at_rest(tmp_path):
+    rest = Story(tmp_path, {20.0: reported(True)}, {20.0: true(0.2)}, outcome=None).safety()[3]
+    assert (rest["met"], rest["warning"]) == (None, "the record ends without a stop")
 
 
 def test_without_truth_safety_is_not_known_but_expectations_are_not_met(tmp_path):
