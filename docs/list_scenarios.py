@@ -40,7 +40,8 @@ FIRST, LAST = (".",), ("onsets", "profiles", "several")
 def page() -> str:
     """The whole page: a table for each folder."""
     parts = [HEAD]
-    for folder, files in groupby(sorted(SCENARIOS.rglob("*.yaml"), key=_place), key=_folder):
+    scenarios = (file for file in SCENARIOS.rglob("*.yaml") if "scenario" in read(file).data)
+    for folder, files in groupby(sorted(scenarios, key=_place), key=_folder):
         parts += [
             f"## {TITLES.get(folder, folder.capitalize())}\n",
             "| file | teaches | verdict |",

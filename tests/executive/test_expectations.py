@@ -219,3 +219,15 @@ def test_a_row_says_nothing_that_json_cannot(tmp_path):
 def test_the_exit_code_stands_for_expectations_and_safety(outcome, expected, met, safe, code):
     result = {"outcome": outcome, "expectations": [{"met": m} for m in met], "safety": [{"met": safe}]}
     assert _exit_code(Expect(outcome=expected), result) == code
+
+
+def test_mission_time_and_path_lie_between_their_bounds(story):
+    rows = story.judged(mission_time={"above": "10 s", "below": "30 s"}, path={"below": "1 mm"})
+    assert [row["met"] for row in rows] == [True, False]
+    assert rows[0]["text"] == "mission_time above 10 s and below 30 s"
+    assert rows[0]["robustness"] == pytest.approx(10.0)
+
+
+def test_a_band_without_a_bound_is_refused():
+    with pytest.raises(ValueError, match="got no bound, expected above, below or both"):
+        Expect.model_validate({"path": {}})

@@ -44,6 +44,27 @@ def test_a_node_forced_after_its_tick_has_done_its_work(tmp_path):
     assert done.breaches() == []
 
 
+def test_a_node_forced_to_fail_for_a_reason_is_answered_for_it_once(tmp_path):
+    fault = {"node_forced": {"node": "trek_to/localise", "reason": "poor_view", "times": 1}, **EARLY}
+    done = run(tmp_path, fault)
+    assert [change.reason for change in changes(done, "localise") if change.reason] == ["poor_view"]
+    assert done.record.all(events.StrategyEvent)[0].event.name == "cabin_reposing"
+    assert done.outcome == "reached"
+    assert done.breaches() == []
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"status": "success", "reason": "blocked"}, "got the reason blocked of a success"),
+        ({"reason": "blokced"}, 'did you mean "blocked"'),
+        ({"reason": "done"}, "got the reason done of a failure"),
+    ],
+)
+def test_only_a_forced_failure_has_a_reason_and_one_that_nodes_know(tmp_path, capsys, more, said):
+    assert said in complaint(tmp_path, capsys, {"node_forced": {"node": "localise"} | more})
+
+
 @pytest.mark.parametrize("at", ["before", "after"])
 def test_a_node_forced_to_run_keeps_the_rover_at_rest_until_the_time_is_up(tmp_path, at):
     done = run(tmp_path, forced("running", at))
