@@ -1,8 +1,8 @@
 """How files speak of a node: by its name, or by as much of its path as tells which one is meant.
 
-    localise                every node of that name
-    trek_to/localise        those of a trek_to: steps of mere control flow may be left out
-    back_off/localise#2     the second in back_off; `#1` is the first alone
+localise                every node of that name
+trek_to/localise        those of a trek_to: steps of mere control flow may be left out
+back_off/localise#2     the second in back_off; `#1` is the first alone
 """
 
 from __future__ import annotations
