@@ -19,6 +19,7 @@ _TERRAIN_TILT_SIGMA_RAD = math.radians(1.0)
 _FLOOR = np.diag([1e-4**2] * 3 + [1e-4**2] * 3)
 _PLANAR = [0, 1, 5]  # x, y, heading: what the gate looks at
 _GATE = 1 - 1e-6
+_NOTHING_KNOWN = 1e3  # m and rad
 _WIDE_POSITION_M = 0.5
 _WIDE_HEADING_RAD = math.radians(45.0)
 
@@ -33,6 +34,13 @@ class Expectation:
     @property
     def prior(self) -> Prior:
         return Prior(self.state.site_body, self.covariance)
+
+    @property
+    def surface(self) -> Prior:
+        """The height of the ground alone, all that a fix may take from what it is to be held against."""
+        covariance = np.diag(np.full(6, _NOTHING_KNOWN**2))
+        covariance[2, 2] = self.covariance[2, 2]
+        return Prior(self.state.site_body, covariance)
 
     @property
     def wide(self) -> bool:
