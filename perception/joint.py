@@ -8,6 +8,7 @@ at each marker agrees with it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -18,7 +19,7 @@ from executive.types import Array, Vec2
 from perception.chain import Chain, ChainState
 from perception.difference import Difference
 from perception.exposure import emission
-from perception.likelihood import Evidence, Likely, most_likely
+from perception.likelihood import Evidence, Likely, most_likely, observed_covariance
 from perception.markers import detection_threshold, filter_snr
 from perception.plausibility import Rejection, faces_cameras
 from perception.pose import Fix, Readings, Sighting, chi2_limit
@@ -28,8 +29,9 @@ from perception.search import FilterImages, Hypothesis, search
 
 FALSE_ALARM_RATE = 1e-3  # of the whole region
 _STARTS = 12
-_GATE = 0.999
-_RIVAL = 9.0  # twice the difference in log likelihood below which another pose explains the images as well
+_COARSE_LOSS = 3.0  # of joint SNR: more than the lattice can cost the best pose over another
+_GATE = 0.9999
+_RIVAL = 6.0  # twice the difference in log likelihood below which another pose explains the images as well
 _APART_PX = 1.0  # poses whose markers are farther apart than this are different explanations
 _LEAST_MARKER_SNR = 2.5  # of one marker in both cameras, to count as shining once the pose is known
 _LEAST_MARKERS = 2
@@ -37,15 +39,15 @@ _LEAST_MARKERS = 2
 
 @dataclass(frozen=True, eq=False)
 class JointFix:
-    """An accepted pose. `snr` of all markers together, the `threshold` it had to exceed, and the `weighed`
-    hypotheses that set it; `detected_px` (2, n, 2) is where the images alone pull each centre."""
+    """An accepted pose, the markers that shine in it, and `note`: what stood out from what.
+
+    `detected_px` (2, n, 2) is where the images alone pull each centre.
+    """
 
     fix: Fix
     markers: int
     detected_px: Array
-    snr: float
-    threshold: float
-    weighed: int
+    note: str
 
 
 def joint_fix(
@@ -70,16 +72,20 @@ def joint_fix(
     sighting = _sighting(chain, expectation, tilt_rad)
     readings = Readings.of(chain, sighting, expectation.surface)
     likely = _climb_all(chain, evidence, readings, starts, _flux_unit(cameras, spread))
-    if not likely or likely[0].snr < threshold:
-        strongest = likely[0].snr if likely else 0.0
+    likely.sort(key=lambda one: -_worth(expectation, one))
+    strongest = max((one.snr for one in likely), default=0.0)
+    if strongest < threshold:
         return Rejection(
             f"joint SNR {strongest:.1f} of all markers, {threshold:.1f} needed among {weighed} hypotheses", 0
         )
-    best = _with_own_fluxes(chain, evidence, readings, likely[0])
+    best, shared = _with_own_fluxes(chain, evidence, readings, likely[0])
     shining = int((best.flux_counts > 0).sum())
     if shining < _LEAST_MARKERS:
         return Rejection(f"{shining} of {len(best.flux_counts)} markers shine at the best pose", shining)
-    return _gated(chain, evidence, best, likely[1:], threshold, weighed)
+    best = replace(best, covariance=observed_covariance(chain, evidence, readings, best, shared))
+    lead = _worth(expectation, likely[0]) - _worth(expectation, likely[1]) if likely[1:] else math.inf
+    note = f"joint SNR {best.snr:.1f}, {threshold:.1f} needed among {weighed} hypotheses"
+    return _gated(chain, best, lead, note)
 
 
 def relative_gain(chain: Chain, state: ChainState) -> Array:
@@ -112,17 +118,17 @@ def _flux_unit(cameras: Sequence[Difference], spread: Spread) -> float:
 def _climb_all(
     chain: Chain, evidence: Evidence, readings: Readings, starts: Sequence[Hypothesis], flux_unit: float
 ) -> list[Likely]:
-    """The distinct poses that the starts lead to, the most likely first."""
+    """The distinct poses that the starts lead to."""
     markers = len(chain.markers_plc_m)
     reached: list[Likely] = []
     for start in starts:
-        if start.snr <= 0:
-            continue
+        if start.snr <= max(starts[0].snr - _COARSE_LOSS, 0.0):
+            break
         flux = np.full(markers, start.snr / np.sqrt(2 * markers) * flux_unit)
         likely = most_likely(chain, evidence, readings, start.state, flux, shared=True)
         if likely is not None and not any(_alike(chain, likely, other) for other in reached):
             reached.append(likely)
-    return sorted(reached, key=lambda one: -one.snr)
+    return reached
 
 
 def _alike(chain: Chain, one: Likely, other: Likely) -> bool:
@@ -130,37 +136,43 @@ def _alike(chain: Chain, one: Likely, other: Likely) -> bool:
     return float(np.abs(apart).max()) < _APART_PX
 
 
-def _with_own_fluxes(chain: Chain, evidence: Evidence, readings: Readings, best: Likely) -> Likely:
+def _with_own_fluxes(
+    chain: Chain, evidence: Evidence, readings: Readings, best: Likely
+) -> tuple[Likely, bool]:
     """The pose again with a flux for each marker, where one for all does not fit; dark ones drop out."""
     information = best.local.information[..., 0, 0] * evidence.gain**2
     pull = best.local.score[..., 0] * evidence.gain
     total = np.maximum(information.sum(axis=0), 1e-30)
     change, sigma = pull.sum(axis=0) / total, 1 / np.sqrt(total)
     if float(((change / sigma) ** 2).sum()) <= chi2_limit(len(change) - 1, _GATE):
-        return best
+        return best, True
     own = best.flux_counts + change
     own = np.where(own > _LEAST_MARKER_SNR * sigma, own, 0.0)
     if np.count_nonzero(own) < _LEAST_MARKERS:
-        return replace(best, flux_counts=own)
-    return most_likely(chain, evidence, readings, best.state, own, shared=False) or best
+        return replace(best, flux_counts=own), False
+    again = most_likely(chain, evidence, readings, best.state, own, shared=False)
+    return (best, True) if again is None else (again, False)
 
 
-def _gated(
-    chain: Chain, evidence: Evidence, best: Likely, rivals: Sequence[Likely], threshold: float, weighed: int
-) -> JointFix | Rejection:
+def _worth(expectation: Expectation, one: Likely) -> float:
+    """Twice the log of likelihood times prediction: of poses equally likely by the images, the nearer one."""
+    return one.snr**2 - expectation.distance2(one.state.site_body)
+
+
+def _gated(chain: Chain, best: Likely, lead: float, note: str) -> JointFix | Rejection:
     """The pose as a fix, unless the images contradict it or something else explains them as well."""
     alive = best.flux_counts > 0
     fix, detected = _as_fix(chain, best, alive)
     seen = int(alive.sum())
-    if not best.converged or fix.chi2 > chi2_limit(fix.dof, _GATE):
+    if not best.converged:
+        return Rejection(f"no best pose after {best.steps} steps", seen)
+    if fix.chi2 > chi2_limit(fix.dof, _GATE):
         return Rejection(f"the images pull the markers apart: chi-square {fix.chi2:.0f} of {fix.dof}", seen)
-    if rivals and best.snr**2 - rivals[0].snr ** 2 < _RIVAL:
-        return Rejection(
-            f"two poses explain the images: joint SNR {best.snr:.1f} and {rivals[0].snr:.1f}", seen
-        )
+    if lead < _RIVAL:
+        return Rejection(f"two poses explain the images, {lead:.1f} apart in log likelihood", seen)
     if not faces_cameras(chain, fix):
         return Rejection("the markers would show their backs", seen)
-    return JointFix(fix, seen, detected, best.snr, threshold, weighed)
+    return JointFix(fix, seen, detected, note)
 
 
 def _as_fix(chain: Chain, best: Likely, alive: NDArray[np.bool_]) -> tuple[Fix, Array]:

@@ -21,8 +21,8 @@ from perception.psf import Spread
 
 _MAX_STEPS = 40
 _MAX_STEP_PX = 0.7
-_CONVERGED_PX = 1e-3
-_CONVERGED_FLUX = 1e-3
+_PROBE_SIGMAS = 0.04
+_CONVERGED_GAIN = 1e-4  # of twice the log likelihood: a hundredth of a sigma
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +64,8 @@ class Local:
 class Likely:
     """The most likely state near a start. `flux_counts` (n,) a marker; `snr` of all markers together.
 
-    `covariance` (6, 6) of the body pose; `local` is taken at the solution, `readings_chi2` from encoders,
-    inclinometers and surface.
+    `covariance` (6, 6) of the body pose, by expected information; `local` is taken at the solution,
+    `readings_chi2` from encoders, inclinometers and surface.
     """
 
     state: ChainState
@@ -86,28 +86,52 @@ def most_likely(
     groups = _groups(flux, shared)
     state = start
     at = _Point.of(chain, evidence, readings, state, flux, groups)
-    damping, converged, count = 1e-3, False, 0
+    damping, converged, count = 1e-2, False, 0
     for count in range(1, _MAX_STEPS + 1):  # noqa: B007 - reported
-        step = _limited(at.step(damping), at.by_state)
+        whole = at.step(damping)
+        gain_ahead = float(at.gradient @ whole)
+        step = _limited(whole, at.by_state)
         moved = state.moved(step[:STATE_SIZE])
         lighter = flux + groups @ step[STATE_SIZE:]
         if (lighter < 0).any() or not lighter.any():
             lighter = np.maximum(lighter, 0.2 * flux)
         there = _Point.of(chain, evidence, readings, moved, lighter, groups)
-        if there.value >= at.value - 1e-9 * (1 + abs(at.value)):
+        gained = there.value - at.value
+        if gained > 0:
             state, flux, at = moved, lighter, there
-            damping = max(damping / 10, 1e-9)
-            if _small(step, at.by_state, groups @ step[STATE_SIZE:], flux):
-                converged = True
-                break
-        elif (damping := damping * 10) > 1e6:
+        if gain_ahead < _CONVERGED_GAIN:
             converged = True
             break
+        damping = damping / 4 if gained > 0.75 * gain_ahead else max(4 * damping, 0.1)
     if not np.isfinite(at.value) or not flux.any():
         return None
-    H = np.linalg.inv(at.information)[:6, :6]
+    covariance: Array = np.asarray(np.linalg.inv(at.information)[:6, :6], dtype=np.float64)
     snr = float(np.sqrt(max(at.value, 0.0)))
-    return Likely(state, flux, (H + H.T) / 2, snr, at.local, at.readings_chi2, count, converged)
+    return Likely(state, flux, covariance, snr, at.local, at.readings_chi2, count, converged)
+
+
+def observed_covariance(
+    chain: Chain, evidence: Evidence, readings: Readings, at: Likely, shared: bool
+) -> Array:
+    """Covariance (6, 6) of the body pose from the likelihood's own curvature, by central differences.
+
+    Of faint light each image has its luck; the curvature knows it, the expected information does not. That
+    one is returned where the likelihood is not curved downwards in all directions.
+    """
+    groups = _groups(at.flux_counts, shared)
+
+    def gradient(step: Array) -> Array:
+        flux = at.flux_counts + groups @ step[STATE_SIZE:]
+        moved = at.state.moved(step[:STATE_SIZE])
+        return _Point.of(chain, evidence, readings, moved, flux, groups).gradient
+
+    expected = _Point.of(chain, evidence, readings, at.state, at.flux_counts, groups).information
+    steps = np.diag(_PROBE_SIGMAS / np.sqrt(np.diag(expected)))
+    H = np.stack([(gradient(-s) - gradient(s)) / (2 * s.max()) for s in steps])
+    H = (H + H.T) / 2
+    curved = bool(np.linalg.eigvalsh(H)[0] > 0)
+    covariance: Array = np.linalg.inv(H if curved else expected)[:6, :6]
+    return (covariance + covariance.T) / 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,8 +161,9 @@ class _Point:
         G = np.zeros((*uv.shape[:2], 3, size))
         G[..., 0, STATE_SIZE:] = evidence.gain[..., None] * groups
         G[..., 1:, :STATE_SIZE] = J
-        information = np.einsum("cnik,cnij,cnjl->kl", G, local.information, G, optimize=True)
-        gradient = np.einsum("cnik,cni->k", G, local.score)
+        flat = G.reshape(-1, size)
+        information = flat.T @ (local.information @ G).reshape(-1, size)
+        gradient = flat.T @ local.score.reshape(-1)
         H, g = np.zeros((STATE_SIZE, STATE_SIZE)), np.zeros(STATE_SIZE)
         chi2 = readings.add_to(state, H, g)
         information[:STATE_SIZE, :STATE_SIZE] += H
@@ -168,12 +193,12 @@ def local_fits(evidence: Evidence, uv_px: Array, flux: Array) -> Local:
         )
         light = (flux * evidence.gain[c])[:, None, None]
         shape = pv[:, :, None] * pu[:, None, :]
-        T = np.stack(
-            [shape, -light * pv[:, :, None] * su[:, None, :], -light * sv[:, :, None] * pu[:, None, :]], 1
-        )
+        along_u, along_v = pv[:, :, None] * su[:, None, :], sv[:, :, None] * pu[:, None, :]
+        T = np.stack([shape, -light * along_u, -light * along_v], axis=1).reshape(len(flux), 3, -1)
         rest = patch - light * shape
-        information[c] = np.einsum("nihw,njhw,nhw->nij", T, T, weight, optimize=True)
-        score[c] = np.einsum("nihw,nhw->ni", T, rest * weight)
+        weighted = (T * weight.reshape(len(flux), 1, -1)).transpose(0, 2, 1)
+        information[c] = T @ weighted
+        score[c] = (rest.reshape(len(flux), 1, -1) @ weighted)[:, 0]
         total += float((weight * (patch**2 - rest**2)).sum())
     return Local(information, score, total)
 
@@ -185,14 +210,15 @@ def _patches(
     images, weights = evidence.images[camera], evidence.weights[camera]
     place = middle - evidence.corners_px[camera]
     size = np.array(images.shape[:0:-1])
-    inside = ((place >= len(offsets) // 2) & (place < size - len(offsets) // 2)).all(axis=1)
-    place = np.where(inside[:, None], place, len(offsets) // 2)
+    reach = len(offsets) // 2
+    inside = np.all((place >= reach) & (place < size - reach), axis=1, keepdims=True)
+    place = np.where(inside, place, reach)
     index = (
         np.arange(len(middle))[:, None, None],
         (place[:, 1, None] + offsets)[:, :, None],
         (place[:, 0, None] + offsets)[:, None, :],
     )
-    return images[index], weights[index] * inside[:, None, None]
+    return images[index], weights[index] * inside[..., None]
 
 
 def _radius(spread: Spread) -> int:
@@ -201,19 +227,11 @@ def _radius(spread: Spread) -> int:
 
 def _groups(flux: Array, shared: bool) -> Array:
     """Which fluxes (n, groups) change together; a marker without flux has none."""
-    alive = np.flatnonzero(flux)
-    if shared:
-        return np.isin(np.arange(len(flux)), alive).astype(np.float64)[:, None]
-    groups: Array = np.eye(len(flux))[:, alive]
-    return groups
+    own: Array = np.eye(len(flux))[:, np.flatnonzero(flux)]
+    return own.sum(axis=1, keepdims=True) if shared else own
 
 
 def _limited(step: Array, by_state: Array) -> Array:
     """A step by which no marker moves farther than the spread's slope reaches."""
     farthest = float(np.linalg.norm(by_state @ step[:STATE_SIZE], axis=-1).max())
     return step * min(1.0, _MAX_STEP_PX / max(farthest, 1e-12))
-
-
-def _small(step: Array, by_state: Array, flux_step: Array, flux: Array) -> bool:
-    farthest = float(np.abs(by_state @ step[:STATE_SIZE]).max())
-    return farthest < _CONVERGED_PX and bool((np.abs(flux_step) <= _CONVERGED_FLUX * flux.max()).all())

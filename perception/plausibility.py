@@ -55,6 +55,15 @@ class Choice:
     sighting: Sighting
     sets_tried: int
 
+    @property
+    def markers(self) -> int:
+        return len(self.points)
+
+    @property
+    def detected_px(self) -> Array:
+        """Centres (2, n, 2) that entered the pose, NaN where none."""
+        return self.sighting.uv_px
+
 
 @dataclass(frozen=True)
 class Rejection:

@@ -48,17 +48,22 @@ class Expectation:
         position = math.sqrt(float(np.linalg.eigvalsh(self.covariance[:2, :2])[-1]))
         return position > _WIDE_POSITION_M or math.sqrt(self.covariance[5, 5]) > _WIDE_HEADING_RAD
 
+    def distance2(self, body: Transform) -> float:
+        """Squared distance of a body from here in the ground's plane and heading, in sigmas."""
+        off = self._off(body)
+        return float(off @ np.linalg.solve(self.covariance[np.ix_(_PLANAR, _PLANAR)], off))
+
+    def _off(self, body: Transform) -> Array:
+        """x, y [m] and heading [rad] of a body off the expected ones."""
+        here = self.state.site_body
+        turn = log_map(body.rotation @ here.rotation.T)
+        return np.concatenate([body.position_m - here.position_m, turn])[_PLANAR]
+
     def misfit(self, fix: Fix) -> str:
         """Why a fix is too far from the prediction to be believed; empty if it is not."""
         if self.wide:
             return ""
-        body = fix.state.site_body
-        off = np.concatenate(
-            [
-                body.position_m - self.state.site_body.position_m,
-                log_map(body.rotation @ self.state.site_body.rotation.T),
-            ]
-        )[_PLANAR]
+        off = self._off(fix.state.site_body)
         P = (self.covariance + fix.covariance)[np.ix_(_PLANAR, _PLANAR)]
         distance = float(off @ np.linalg.solve(P, off))
         if distance <= chi2_limit(len(_PLANAR), _GATE):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Shot, Window
-from sim_pybullet.error_model import centre_error
+from sim_pybullet.error_model import JOINT_EXCESS, CentreError, centre_error, joint_chance
 from sim_pybullet.exposing import full_windows
 from sim_pybullet.leds import MarkerOptics, Spot
 from sim_pybullet.projection import head_views
@@ -19,7 +19,8 @@ _ROVER_MIDDLE_BODY_M = np.array([0.0, 0.0, 0.065])
 class CentreDeveloper:
     """Answers a shot with `Centres`.
 
-    A marker that is hidden, dead, outside the window or not found by chance is NaN. A shot in which no LED
+    A marker that is hidden, dead, outside the window or not found by chance is NaN; in a coded shot chance
+    finds all or none. A shot in which no LED
     is lit is one for motion fragments: it answers with the rover's projected middle, the mean over its
     frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN elsewhere.
     """
@@ -47,17 +48,28 @@ class CentreDeveloper:
         self, shot: Shot, scene: SceneState, camera: int, window: Window
     ) -> dict[int, tuple[Array, float]]:
         view = head_views(self._rig, scene.head_pan_rad, scene.head_tilt_rad)[camera]
+        spots = self._optics.spots(scene, view)
+        coded = any(leds & (leds - 1) for leds in shot.leds)
+        errors = [self._error(shot, index, spot, coded) for index, spot in enumerate(spots)]
+        together = joint_chance(errors) if coded else None
         found = {}
-        dark = shot.leds.count(0)
-        for index, spot in enumerate(self._optics.spots(scene, view)):
-            lit = sum(leds >> index & 1 for leds in shot.leds)
-            error = centre_error(spot, self._exposure, lit, dark)
+        luck = None
+        for index, (spot, error) in enumerate(zip(spots, errors, strict=True)):
             # Drawn for every marker, so that one that vanishes does not change the others' luck.
             chance, noise = self._rng.uniform(), self._rng.standard_normal(2)
-            if chance < error.found and _within(spot, window):
+            luck = chance if luck is None or together is None else luck
+            shows = error.snr > 0 and luck < (error.found if together is None else together)
+            if shows and _within(spot, window):
                 centre = np.array([spot.u_px, spot.v_px]) + noise * (error.sigma_u_px, error.sigma_v_px)
                 found[index] = (centre, error.reported_px)
         return found
+
+    def _error(self, shot: Shot, index: int, spot: Spot, coded: bool) -> CentreError:
+        """One marker's error: against the dark frames, or in a code against all where it is off."""
+        lit = sum(leds >> index & 1 for leds in shot.leds)
+        if coded:
+            return centre_error(spot, self._exposure, lit, len(shot.leds) - lit, JOINT_EXCESS)
+        return centre_error(spot, self._exposure, lit, shot.leds.count(0))
 
     def _middle(
         self, scenes: tuple[SceneState, ...], camera: int, window: Window

@@ -59,7 +59,7 @@ class Localise(ActionLeaf):
         self.services.journal.assessment(classification.fixed(fix))
         self.services.journal.estimate(fix)
         self.pose = fix
-        return Outcome(Reason.DONE, _summary(fix), fix)
+        return Outcome(Reason.DONE, "; ".join(filter(None, (_summary(fix), outcome.detail))), fix)
 
 
 def _summary(fix: PoseEstimate) -> str:

@@ -113,7 +113,7 @@ def draw(range_m: float, rng: np.random.Generator, rig: RigCalibration) -> Setti
         np.diag([OFF_M**2 / 3, OFF_M**2 / 3, 1e-12, 1e-4, 1e-4, OFF_RAD**2 / 3]),
         Source.PREDICTION,
     )
-    head = pointing_at(chain, np.array(predicted.position_site_m) + [0, 0, 0.12])
+    head = pointing_at(chain, np.add(predicted.position_site_m, [0, 0, 0.12]))
     said = ChainState(body, head, (0.0, cabin))
     half = np.array([rig.head.pan_accuracy_rad, rig.head.tilt_accuracy_rad])
     true_head = tuple(np.array(head) + half * rng.uniform(-1, 1, 2))
@@ -178,7 +178,12 @@ def run_trial(
         unused = watch.elapsed_s()
         look = look_at(chain.rig, images, view_of(chain, setting.expectation.state).range_m)
         found = choose(
-            chain, look.candidates, said.head_rad, said.joints_rad, setting.tilt_rad, setting.expectation.prior
+            chain,
+            look.candidates,
+            said.head_rad,
+            said.joints_rad,
+            setting.tilt_rad,
+            setting.expectation.prior,
         )
         weights = np.linalg.norm(pair_weights(leds, 4), axis=1)
     limit = bound(setting, weights, GROUND_SIGMA_M if joint else np.inf)
