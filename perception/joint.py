@@ -66,7 +66,7 @@ def joint_fix(
         )
         for c, corner in zip(cameras, corners_px, strict=True)
     ]
-    starts, weighed = search(chain, filtered, expectation, widen, _STARTS)
+    starts, weighed = search(chain, filtered, expectation, spread, widen, _STARTS)
     threshold = detection_threshold(max(weighed, 1), FALSE_ALARM_RATE)
     evidence = Evidence.of(cameras, corners_px, spread, relative_gain(chain, expectation.state))
     sighting = _sighting(chain, expectation, tilt_rad)

@@ -19,10 +19,11 @@ from executive.types import Array
 from perception.body import Transform
 from perception.chain import Chain, ChainState
 from perception.prediction import Expectation
+from perception.psf import Spread
 from perception.rotation import exp_map, rot_z
 
 REGION_SIGMAS = 3.5
-_STEP_PX = 0.8  # of the lattice: the farthest a marker moves from one pattern to the next
+_STEP_WIDTHS = 1.3  # of the lattice: the farthest a marker moves from one pattern to the next, in its widths
 _ROOM_PX = 2.0
 _UP = np.array([0.0, 0.0, 1.0])
 
@@ -63,10 +64,15 @@ class _Motion:
 
 
 def search(
-    chain: Chain, cameras: Sequence[FilterImages], expectation: Expectation, widen: float, at_most: int
+    chain: Chain,
+    cameras: Sequence[FilterImages],
+    expectation: Expectation,
+    spread: Spread,
+    widen: float,
+    at_most: int,
 ) -> tuple[list[Hypothesis], int]:
     """The best hypotheses, one a pattern, best first, and how many were weighed."""
-    lattice = _Lattice.of(chain, expectation, widen)
+    lattice = _Lattice.of(chain, expectation, _STEP_WIDTHS * spread.width_px, widen)
     found: list[Hypothesis] = []
     weighed = 0
     for state in lattice.patterns(expectation.state):
@@ -94,7 +100,7 @@ class _Lattice:
     row_per_m: float
 
     @classmethod
-    def of(cls, chain: Chain, expectation: Expectation, widen: float) -> _Lattice:
+    def of(cls, chain: Chain, expectation: Expectation, step_px: float, widen: float) -> _Lattice:
         state, reach = expectation.state, REGION_SIGMAS * widen
         motion = _Motion.of(chain, state)
         x, y, _ = state.site_body.position_m
@@ -108,8 +114,8 @@ class _Lattice:
         )
         per_rad, per_m = float(motion.about_mast[..., 0].mean()), float(motion.up[..., 1].mean())
         return cls(
-            _steps(min(reach * sigma_away, 0.8 * distance), motion.away),
-            _steps(min(reach * math.hypot(math.sqrt(P[5, 5]), sigma_bearing), math.pi), motion.turn),
+            _steps(min(reach * sigma_away, 0.8 * distance), motion.away, step_px),
+            _steps(min(reach * math.hypot(math.sqrt(P[5, 5]), sigma_bearing), math.pi), motion.turn, step_px),
             math.ceil(reach * sigma_bearing * abs(per_rad) + _ROOM_PX),
             math.ceil(reach * math.sqrt(P[2, 2]) * abs(per_m) + _ROOM_PX),
             per_rad,
@@ -135,10 +141,10 @@ class _Lattice:
         )
 
 
-def _steps(half_width: float, motion_px: Array) -> Array:
-    """Offsets within +-half_width, so fine that no marker strays from the pattern by more than `_STEP_PX`."""
+def _steps(half_width: float, motion_px: Array, step_px: float) -> Array:
+    """Offsets within +-half_width, so fine that no marker strays from the pattern by more than `step_px`."""
     strays = float(np.linalg.norm(motion_px - motion_px.mean(axis=(0, 1)), axis=-1).max())
-    count = math.ceil(half_width * strays / _STEP_PX)
+    count = math.ceil(half_width * strays / step_px)
     return np.linspace(-half_width, half_width, 2 * count + 1)
 
 
