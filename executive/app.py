@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from executive import plugins
 from executive.assembly import TICK_S, set_up, write_start
 from executive.backends import BackendRequest
 from executive.clock import Stopwatch
+from executive.config.expect import Expect
 from executive.errors import LongarmError, RecordError
 from executive.expectations import judge
+from executive.one_thread import one_thread
 from executive.pool import Strategy
 from executive.pool_plugins import load_strategies, strategy_trees
 from executive.progress import progress_bar
 from executive.report import write_report
 from executive.run_folder import RUN_FILES, free_folder, make_folder, unwrite, write_traceback
 from executive.runner import RunEnd, ended_by, execute
+from executive.safety import safety_rows
 from executive.scenario import ResolvedScenario, resolve_scenario
 from executive.show import draw
-from executive.telemetry import History, events
+from executive.telemetry import History, digest, events
 from executive.telemetry.recorder import Recorder
-from executive.telemetry.result import RunFigures, summarise, write_result
+from executive.telemetry.result import RunFigures, summary_of, write_result
 
 REACHED, OTHERWISE, DEFECT = 0, 1, 3
 
@@ -38,6 +41,8 @@ class RunOptions:
     tier: str | None = None
     overrides: Sequence[str] = ()
     bar: bool = True
+    report: bool = True
+    """Whether `report.html` is written; `longarm report` can do it later."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,7 @@ class Finished:
     folder: Path
     result: dict[str, Any]
     exit_code: int
+    defect: BaseException | None = None
 
 
 def run(file: Path, options: RunOptions) -> Finished:
@@ -54,7 +60,11 @@ def run(file: Path, options: RunOptions) -> Finished:
 
     A defect ends the run, not the folder: record, result and report are complete and `traceback.txt` tells.
     """
-    scenario = resolve_scenario(file, options.seed, options.tier, options.overrides)
+    return run_scenario(resolve_scenario(file, options.seed, options.tier, options.overrides), options)
+
+
+def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
+    """The same for a scenario already resolved; of the options, those that change it are without effect."""
     strategies = load_strategies()
     localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
     watch = Stopwatch()
@@ -65,23 +75,28 @@ def run(file: Path, options: RunOptions) -> Finished:
         (folder / stale).unlink(missing_ok=True)
     (folder / "scenario.yaml").write_text(scenario.dump())  # first, so that a run cut off can be repeated
     try:
-        end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
+        with one_thread():
+            end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
     except LongarmError:
         unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
         raise
     if end.defect is not None:
         write_traceback(folder, end.defect)
     try:
-        return _conclude(scenario, folder, end, watch)
+        return _conclude(scenario, folder, end, watch, options.report)
     except Exception as defect:
         write_traceback(folder, defect)
         raise
 
 
 def report(folder: Path) -> Path:
-    """(Re)write the report of a run folder from its record; RecordError where there is none."""
+    """(Re)write the report of a run or campaign folder from its record; RecordError where there is none."""
+    for name in plugins.found(plugins.REPORTERS):
+        if (folder / f"{name}.json").is_file():
+            reporter = cast("Callable[[Path], Path]", plugins.load(plugins.REPORTERS, name))
+            return reporter(folder)
     if not (folder / "record.mcap").is_file():
-        raise RecordError(f"{folder}: got no record.mcap, expected a run folder")
+        raise RecordError(f"{folder}: got no record.mcap, expected a run or campaign folder")
     return write_report(folder, _tree_svg(folder))
 
 
@@ -121,18 +136,30 @@ def _execute(
     return end
 
 
-def _conclude(scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch) -> Finished:
-    record, truth = folder / "record.mcap", folder / "truth.mcap"
+def _conclude(
+    scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch, with_report: bool
+) -> Finished:
     figures = RunFigures(
         wall_s=round(watch.elapsed_s(), 3),
         wall={part: round(spent, 3) for part, spent in sorted(watch.spent_s.items())},
         waypoints_total=len(scenario.mission.waypoints),
     )
-    result = summarise(record, truth, figures)
-    result["expectations"] = judge(scenario.expect, result)
+    result = judged(scenario, folder, figures)
     write_result(folder / "result.json", result)
-    write_report(folder, _tree_svg(folder))
-    return Finished(folder, json.loads((folder / "result.json").read_text()), _exit_code(end, result))
+    if with_report:
+        write_report(folder, _tree_svg(folder))
+    kept = json.loads((folder / "result.json").read_text())
+    return Finished(folder, kept, _exit_code(scenario.expect, result), end.defect)
+
+
+def judged(scenario: ResolvedScenario, folder: Path, figures: RunFigures) -> dict[str, Any]:
+    """The content of `result.json` from the records of a run, complete or cut off."""
+    record, truth = folder / "record.mcap", folder / "truth.mcap"
+    history, world = History.of(record), History.of(truth) if truth.is_file() else History.empty()
+    result = summary_of(history, world, digest(record), figures)
+    result["expectations"] = judge(scenario.expect, result, history, world)
+    result["safety"] = safety_rows(history, world, scenario.rig)
+    return result
 
 
 def _tree_svg(folder: Path) -> str | None:
@@ -158,11 +185,12 @@ def last_outcomes(folder: Path) -> dict[str, str]:
     return {at.event.path: at.event.status for at in changes if at.event.status != "invalid"}
 
 
-def _exit_code(end: RunEnd, result: dict[str, Any]) -> int:
-    if end.outcome == "error":
+def _exit_code(expect: Expect, result: Mapping[str, Any]) -> int:
+    """A scenario's expectations decide, and its safety; without any, whether the goal was reached."""
+    outcome, rows = result["outcome"], result["expectations"]
+    as_expected = all(row["met"] for row in rows) and all(row["met"] is not False for row in result["safety"])
+    if outcome == "error" and not (as_expected and outcome in expect.outcome):
         return DEFECT
-    if end.outcome == "invalid":
-        return OTHERWISE
-    if result["expectations"]:
-        return REACHED if all(row["met"] for row in result["expectations"]) else OTHERWISE
-    return REACHED if end.outcome == "reached" else OTHERWISE
+    if outcome == "invalid" or not rows:
+        return REACHED if outcome == "reached" else OTHERWISE
+    return REACHED if as_expected else OTHERWISE

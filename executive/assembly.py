@@ -92,7 +92,7 @@ def _prepare(
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
-    built = build(scenario.tree, services, inputs, strategy_trees(strategies))
+    built = build(scenario.tree, services, inputs, strategy_trees(strategies, scenario.instead))
     faults.wrap_tree(TreeParts(built.paths, built.store.values))
     return Run(
         root=built.root,

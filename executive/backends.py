@@ -44,11 +44,16 @@ def no_problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldProb
     return ()
 
 
+def nothing_to_load() -> None:
+    """The `preload` of a backend that is all there once it is registered."""
+
+
 @dataclass(frozen=True)
 class BackendSpec:
     """A backend by name: its world's schema, the tiers it can play, and how to make one.
 
-    `problems` tells, before anything is made or written, why a world cannot be made for a route.
+    `problems` tells, before anything is made or written, why a world cannot be made for a route. `preload`
+    imports what `create` needs, for a process that is about to make many.
     """
 
     name: str
@@ -57,3 +62,4 @@ class BackendSpec:
     tiers: tuple[str, ...]
     create: Callable[[BackendRequest], Backend]
     problems: Callable[[BaseModel, tuple[Segment, ...]], tuple[WorldProblem, ...]] = no_problems
+    preload: Callable[[], None] = nothing_to_load

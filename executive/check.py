@@ -11,10 +11,11 @@ from executive.config.find import shown
 from executive.config.source import read
 from executive.config.validate import guess, listed
 from executive.errors import ConfigError, Problem
+from executive.file_kinds import file_kind, file_kinds
 from executive.scenario import as_scenario, resolve
 from executive.tree.load import load_tree
 
-KINDS = ("tree", "mission", "scenario", "campaign")
+OWN = ("tree", "mission", "scenario")
 
 
 def check_file(path: Path) -> tuple[Problem, ...]:
@@ -24,13 +25,14 @@ def check_file(path: Path) -> tuple[Problem, ...]:
         kind = kind_of(source.data)
         if kind is None:
             keys = [str(key) for key in source.data] if isinstance(source.data, dict) else []
-            near = next((text for key in keys if (text := guess(key, KINDS))), "")
-            message = f"got a file of no known kind, expected one of the keys {listed(KINDS)}{near}"
+            known = (*file_kinds(), *OWN)
+            near = next((text for key in keys if (text := guess(key, known))), "")
+            message = f"got a file of no known kind, expected one of the keys {listed(known)}{near}"
             return tuple(sorted({*source.problems, source.at(()).problem(message)}))
-        if kind == "campaign":
-            return (source.at(()).problem("campaigns are not supported yet"),)
         if kind == "tree":
             load_tree(path)
+        elif kind in file_kinds():
+            file_kind(kind).check(source)
         else:
             resolve(as_scenario(source))
     except ConfigError as error:
@@ -39,12 +41,12 @@ def check_file(path: Path) -> tuple[Problem, ...]:
 
 
 def kind_of(data: Any) -> str | None:
-    """Tree, mission, scenario or campaign, by the key that names the file."""
+    """Tree, mission, scenario, or a kind that a plug-in reads, by the key that names the file."""
     if not isinstance(data, dict):
         return None
     if "tree" in data and "root" in data:
         return "tree"
-    return next((kind for kind in ("campaign", "scenario", "mission", "tree") if kind in data), None)
+    return next((kind for kind in (*file_kinds(), "scenario", "mission", "tree") if kind in data), None)
 
 
 def as_text(problems: Sequence[Problem]) -> str:

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import click
 
+from executive.command_group import CommandGroup
 from executive.errors import LongarmError
 
-NOT_YET = ("test", "campaign", "import", "explain", "replay", "minimise")
 DEFECT = 3
 
 
@@ -54,7 +54,7 @@ def _deepest(error: BaseException) -> str:
     return f"{Path(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno}"
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"]})
 def cli() -> None:
     """Longarm: a rover led by its lander's stereo head, run by a behaviour tree.
 
@@ -104,15 +104,34 @@ def run(
 
 
 @cli.command()
-@click.argument("run_dir", type=FILE)
-def report(run_dir: Path) -> int:
-    """Write the self-contained report.html of a run folder anew, from its record.
+@click.argument("folder", type=FILE)
+def report(folder: Path) -> int:
+    """Write the self-contained report.html of a run or campaign folder anew, from its record.
 
     Example: longarm report runs/first_traverse-7
     """
     from executive import app
 
-    click.echo(app.report(run_dir))
+    click.echo(app.report(folder))
+    return 0
+
+
+@cli.command()
+@click.argument("run_dir", type=FILE)
+@click.option("--at", metavar="TIME", help="Mission time such as '12 min' or 720; the end by default.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def explain(run_dir: Path, at: str | None, as_json: bool) -> int:
+    """Say why: the chain from leaf to root, hypotheses with weights, what was tried and why that.
+
+    Example: longarm explain runs/marker_out-7 --at "20 min"
+    """
+    from executive import explain as explaining
+
+    found = explaining.explain(run_dir, at)
+    if as_json:
+        click.echo(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
+    else:
+        click.echo(explaining.as_text(found), nl=False)
     return 0
 
 
@@ -121,7 +140,7 @@ def report(run_dir: Path) -> int:
 @click.option("--format", "form", type=click.Choice(["text", "json", "sarif"]), default="text")
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
-    """Analyse trees, missions and scenarios without running them; print every problem.
+    """Analyse trees, missions, scenarios and campaigns without running them; print every problem.
 
     Example: longarm check trees/*.yaml missions/*.yaml --format sarif
     """
@@ -172,6 +191,25 @@ def show(tree: str, form: str, output: Path | None) -> int:
     return 0
 
 
+@cli.command("import")
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, default=Path("trees"), show_default=True, help="Where to write.")
+@click.option("--force", is_flag=True, help="Replace files that are there already.")
+def import_(file: Path, output: Path, force: bool) -> int:
+    """Turn BehaviorTree.CPP v4 XML into tree files, one a tree; what reads a little differently is told.
+
+    Example: longarm import mission.xml -o trees
+    """
+    from executive import importing
+
+    imported = importing.import_file(file)
+    for path in importing.write_trees(imported.trees, output, force):
+        click.echo(path)
+    for note in imported.notes:
+        click.echo(f"{note.file}:{note.line}:{note.column}: note: {note.message}", err=True)
+    return 0
+
+
 def _catalogue(kind: str, example: str) -> None:
     about = f"List the {kind}, or one of them in full.\n\nExample: longarm {kind} {example}"
 
@@ -208,30 +246,18 @@ for _kind, _example in (
 
 
 @cli.command()
-@click.argument("kind", type=click.Choice(["tree", "mission", "scenario", "campaign"]))
+@click.argument("kind")
 def schema(kind: str) -> int:
-    """Print the JSON Schema of a kind of file, for editors.
+    """Print the JSON Schema of a kind of file, for editors: tree, mission, scenario or campaign.
 
     Example: longarm schema tree > tree.schema.json
     """
     from executive import schema as schemas
+    from executive.config.validate import guess, listed
 
-    if kind not in schemas.KINDS:
-        raise click.UsageError(f"the schema of a {kind} is not there yet")
+    if kind not in schemas.kinds():
+        raise click.UsageError(
+            f'got "{kind}", expected {listed(schemas.kinds())}{guess(kind, schemas.kinds())}'
+        )
     click.echo(json.dumps(schemas.schema(kind), indent=2, ensure_ascii=False))
     return 0
-
-
-def _not_yet(name: str) -> None:
-    settings = {"ignore_unknown_options": True}
-
-    @cli.command(
-        name, help=f"Not yet available.\n\nExample: longarm {name} --help", context_settings=settings
-    )
-    @click.argument("arguments", nargs=-1, type=click.UNPROCESSED)
-    def command(arguments: tuple[str, ...]) -> int:
-        raise click.UsageError(f"longarm {name} is not there yet")
-
-
-for _name in NOT_YET:
-    _not_yet(_name)

@@ -6,7 +6,10 @@ import math
 import operator
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Any
+
+import numpy as np
 
 from executive import units
 from executive.attributes import attribute_of
@@ -208,15 +211,23 @@ def negative(inner: Expression) -> Expression:
     )
 
 
-FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "min": min, "max": max}
+FUNCTIONS: dict[str, Callable[[list[Any]], Any]] = {
+    "abs": lambda values: abs(values[0]),
+    "min": lambda values: reduce(np.minimum, values) if _sampled(values) else min(values),
+    "max": lambda values: reduce(np.maximum, values) if _sampled(values) else max(values),
+}
+
+
+def _sampled(values: list[Any]) -> bool:
+    """Whether these are signals over time, to be taken sample by sample, not numbers."""
+    return any(isinstance(value, np.ndarray) for value in values)
 
 
 def call(token: Token, arguments: list[Expression]) -> Expression:
     function = FUNCTIONS[token.text]
 
     def evaluate(read: Read) -> Any:
-        values = [argument.evaluate(read) for argument in arguments]
-        return function(values[0]) if len(values) == 1 else function(values)
+        return function([argument.evaluate(read) for argument in arguments])
 
     def kind(types: Mapping[str, ValueType[Any]]) -> Kind:
         first = _number_kind(arguments[0], types)

@@ -49,6 +49,12 @@ class Profile(Strict):
 STEP = "step"
 
 
+def names(graded: bool, lasting: bool) -> tuple[str, ...]:
+    """The profiles that a fault may have."""
+    passing = () if lasting else ("intermittent", "random")
+    return (STEP, *(("ramp",) if graded else ()), *passing)
+
+
 @dataclass
 class Shape:
     """A profile under way. Ask `level` with times that do not decrease."""

@@ -75,7 +75,7 @@ class FaultSchedule:
     def wrap_pool(self, strategies: tuple[Strategy, ...]) -> tuple[Strategy, ...]:
         """The strategies that are found with these faults."""
         for injection in self._injections:
-            strategies = injection.fault.wrap_pool(strategies)
+            strategies = injection.fault.wrap_pool(strategies, injection.cue)
         return strategies
 
     def wrap_tree(self, tree: TreeParts) -> None:
@@ -88,7 +88,8 @@ class FaultSchedule:
         if not self._injections:
             return
         now_s = self._backend.clock.now_s
-        progress = journal.along_route_m() / sum(segment.length_m for segment in route)
+        waiting = any(injection.since_s is None for injection in self._injections)
+        progress = journal.along_route_m() / sum(s.length_m for s in route) if waiting else 1.0
         for injection in self._injections:
             if injection.since_s is None and injection.onset.due(self.sightings, now_s, progress):
                 injection.since_s = now_s

@@ -64,8 +64,8 @@ class Fault:
     def wrap_tree(self, tree: TreeParts, cue: Cue) -> None:
         """Alter the behaviours of the built tree, in place."""
 
-    def wrap_pool(self, strategies: tuple[Strategy, ...]) -> tuple[Strategy, ...]:
-        """The strategies that the executive finds when it starts."""
+    def wrap_pool(self, strategies: tuple[Strategy, ...], cue: Cue) -> tuple[Strategy, ...]:
+        """The strategies as the executive shall find them when it starts."""
         return strategies
 
     def apply(self, backend: Backend, level: float) -> None:
@@ -85,8 +85,9 @@ class FaultSpec:
 
     `make` is given an instance of `model`. `backends` and `tiers` say where it can act (empty: everywhere).
     A `lasting` fault cannot be taken back, so that `for` is refused; a `graded` one knows levels between 0
-    and 1, so that it may come as a ramp. `node` and `strategy` name the parameters that must name a node of
-    the tree or a strategy of the pool.
+    and 1, so that it may come as a ramp. `node`, `value` and `strategy` name the parameters that must name a
+    node or a value of the tree, or a strategy of the pool. `hypothesis` is empty where there is nothing for
+    the classification to find.
     """
 
     name: str
@@ -100,6 +101,7 @@ class FaultSpec:
     category: str = "other"
     graded: bool = False
     node: str | None = None
+    value: str | None = None
     strategy: str | None = None
 
     def __post_init__(self) -> None:

@@ -174,6 +174,8 @@ def weigh(
     for hypothesis, signature in SIGNATURES.items():
         weight = (1 - forgetting) * weights[hypothesis] + forgetting * PRIOR[hypothesis]
         for channel, (value, scale) in evidence.channels.items():
+            if not math.isfinite(value):
+                continue  # a sensor that says nothing must not spoil what the others say
             weight *= signature.get(channel, NOMINAL[channel]).likelihood(value, scale)
         posterior[hypothesis] = weight
     total = sum(posterior.values())

@@ -50,6 +50,11 @@ class RunJournal:
         self.reached = max(self.reached, index + 1)
         self.write(events.WaypointEvent(index, target, pose))
 
+    def missed(self) -> str | None:
+        """What a tree that succeeds has left out: way-points, if it reports any at all; None for nothing."""
+        total = len(self._route) + 1
+        return f"{self.reached} of {total} way-points were reached" if 0 < self.reached < total else None
+
     def call(self, call: Call) -> None:
         self.called = call
         self.write(call)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass
+from dataclasses import asdict, fields, is_dataclass
 from typing import Any
 
 from pydantic import BaseModel
 
 from executive import plugins
+from executive.config.describe import Parameter, parameters, properties
+from executive.fault_profiles import names as profile_names
+from executive.faults import FaultSpec
 from executive.nodes.base import REQUIRED, FromTree, PortSpec
 from executive.tree.catalogue import NodeType, node_types
 
+ANYWHERE = ("tiers", "backends")  # where nothing is said, all of them
 GROUPS = {"strategies": plugins.STRATEGIES, "faults": plugins.FAULTS, "backends": plugins.BACKENDS}
 
 
@@ -19,7 +23,26 @@ def entries(kind: str) -> dict[str, dict[str, Any]]:
     if kind == "nodes":
         return {name: _node(node) for name, node in sorted(node_types().items())}
     group = GROUPS[kind]
-    return {name: _plugin(plugins.load(group, name)) for name in sorted(plugins.found(group))}
+    return {name: _told(plugins.load(group, name)) for name in sorted(plugins.found(group))}
+
+
+def _told(plugin: object) -> dict[str, Any]:
+    return _fault(plugin) if isinstance(plugin, FaultSpec) else _plugin(plugin)
+
+
+def _fault(spec: FaultSpec) -> dict[str, Any]:
+    """What a scenario may say of a fault, where it acts, and what it should lead to."""
+    return {
+        "category": spec.category,
+        "doc": spec.doc,
+        "parameters": [asdict(parameter) for parameter in parameters(spec.model)],
+        "profiles": list(profile_names(spec.graded, spec.lasting)),
+        "lasting": spec.lasting,
+        "tiers": list(spec.tiers),
+        "backends": list(spec.backends),
+        "hypothesis": spec.hypothesis,
+        "model": properties(spec.model),
+    }
 
 
 def _node(node: NodeType) -> dict[str, Any]:
@@ -57,7 +80,7 @@ def _plugin(plugin: object) -> dict[str, Any]:
 
 def _plain(value: Any) -> Any:
     if isinstance(value, type) and issubclass(value, BaseModel):
-        return value.model_json_schema(by_alias=True).get("properties", {})
+        return properties(value)
     if isinstance(value, int | float | str | None):
         return value
     if isinstance(value, dict):
@@ -68,12 +91,24 @@ def _plain(value: Any) -> Any:
 
 
 def as_text(name: str, entry: dict[str, Any]) -> str:
-    """One entry for people: its doc, then a line per port or field."""
+    """One entry for people: its doc, then a line per port, parameter or field."""
     lines = [name + (f"  ({entry['category']})" if "category" in entry else ""), f"  {entry.get('doc', '')}"]
-    for port in entry.get("ports", ()):
-        default = "" if port["required"] else f", default {port.get('default')}"
-        lines.append(f"  {port['direction']:5} {port['name']}: {port['type']}{default}   {port['help']}")
+    lines += [_port_line(port) for port in entry.get("ports", ())]
+    lines += [_parameter_line(Parameter(**given)) for given in entry.get("parameters", ())]
+    told = ("doc", "category", "ports", "children", "parameters", *(("model",) * ("parameters" in entry)))
     for key, value in entry.items():
-        if key not in ("doc", "category", "ports", "children") and value not in (None, [], {}, ""):
+        if key in ANYWHERE and not value:
+            lines.append(f"  {key}: any")
+        elif key not in told and value is not False and value not in (None, [], {}, ""):
             lines.append(f"  {key}: {', '.join(value) if isinstance(value, list | dict) else value}")
     return "\n".join(lines) + "\n"
+
+
+def _port_line(port: dict[str, Any]) -> str:
+    default = "" if port["required"] else f", default {port.get('default')}"
+    return f"  {port['direction']:5} {port['name']}: {port['type']}{default}   {port['help']}"
+
+
+def _parameter_line(parameter: Parameter) -> str:
+    default = "required" if parameter.required else f"default {parameter.default}"
+    return f"  {parameter.name}: {parameter.kind}, {default}   {parameter.doc}"

@@ -191,7 +191,7 @@ class Pool:
             if abs(offset.cross_m) >= segment.off_track_m:
                 return "beyond the off-track margin any autonomous correction is forbidden"
             room = segment.off_track_m - abs(offset.cross_m) - 2 * situation.pose.sigma_across_m(segment)
-            if strategy.excursion_m > room:
+            if strategy.excursion_m > max(room, 0.0):  # to stay where it is a rover needs no room
                 return f"may leave the margin: needs {strategy.excursion_m:.2f} m, has {room:.2f} m"
         if self._tried_here(strategy.name, segment, offset.along_m if offset else None):
             return "did not help here before"

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from executive import plugins
 from executive.pool import Strategy
-from executive.tree.load import load_tree
+from executive.tree.load import AS_IT_IS, Instead, load_tree
 from executive.tree.spec import TreeSpec
 
 
@@ -20,6 +20,9 @@ def load_strategies() -> tuple[Strategy, ...]:
     return tuple(loaded)
 
 
-def strategy_trees(strategies: Sequence[Strategy]) -> dict[str, TreeSpec]:
-    """The strategies' own sub-trees by name; ConfigError with what is wrong in them."""
-    return {strategy.name: load_tree(strategy.tree) for strategy in strategies}
+def strategy_trees(strategies: Sequence[Strategy], instead: Instead = AS_IT_IS) -> dict[str, TreeSpec]:
+    """The strategies' own sub-trees by name; ConfigError with what is wrong in them.
+
+    `instead` gives the texts of files that shall be taken to say something else.
+    """
+    return {strategy.name: load_tree(strategy.tree, instead=instead) for strategy in strategies}

@@ -190,6 +190,16 @@ def innovate(state: MotionState, fix: PoseEstimate) -> tuple[Array, Array]:
     return innovation, state.covariance[:3, :3] + fix.covariance[np.ix_([0, 1, 5], [0, 1, 5])]
 
 
+def unusable(fix: PoseEstimate, since_s: float) -> str | None:
+    """Why an estimate that was asked for at `since_s` says nothing at all; None if it may be weighed."""
+    numbers = np.array([*fix.position_site_m, *fix.quat_site_body, fix.time_s])
+    if not (np.isfinite(numbers).all() and np.isfinite(fix.covariance).all()):
+        return "the pose found is no number"
+    if fix.time_s < since_s:
+        return f"the pose found is {since_s - fix.time_s:.0f} s older than the question"
+    return None
+
+
 def relocate(state: MotionState, fix: PoseEstimate) -> MotionState:
     """The state put at a fix without learning from it: for a move that the model does not explain."""
     covariance = np.zeros((6, 6))

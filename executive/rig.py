@@ -69,7 +69,11 @@ class CabinCalibration:
 
 @dataclass(frozen=True)
 class RoverCalibration:
-    """The rover as drawn: sizes and masses of the paper's table 2."""
+    """The rover as drawn: sizes and masses of the paper's table 2.
+
+    The limits are what it must never be exposed to, whatever happens: `tilt_limit_rad` leaves a margin to the
+    25 degrees at which drives stop, `tether_limit_n` is about its own weight on Mars.
+    """
 
     length_m: float = 0.340
     width_m: float = 0.165
@@ -80,6 +84,8 @@ class RoverCalibration:
     payload_mass_kg: float = 1.10
     tether_length_m: float = 100.0
     inclinometer_sigma_rad: float = math.radians(0.1)
+    tilt_limit_rad: float = math.radians(30.0)
+    tether_limit_n: float = 10.0
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from executive.clock import Stopwatch
 from executive.errors import NodeRaised
 from executive.journal import RunJournal
 from executive.nodes.base import Leaf, Trace
+from executive.nodes.decorators import Guarded
 from executive.nodes.services import Services
 from executive.ports import Backend
 from executive.telemetry import events
@@ -24,11 +25,15 @@ TELEMETRY_PERIOD_S = 10.0
 
 @dataclass(frozen=True)
 class RunEnd:
-    """How a run ended: one of `result.json`'s outcomes, why, and the defect if it was one."""
+    """How a run ended: one of `result.json`'s outcomes, why, and the defect if it was one.
+
+    `cut` says that a defect or the operator cut it short: what it proves or not is no question then.
+    """
 
     outcome: str
     reason: str | None
     defect: BaseException | None = None
+    cut: bool = False
 
 
 @dataclass
@@ -52,13 +57,11 @@ class Run:
 
 def execute(run: Run) -> RunEnd:
     """Run the tree to its end. Always: leaves terminated, rover at rest, stop written, record closed."""
-    end, changes = RunEnd("error", "the run was interrupted"), _Changes(run)
+    end, changes = RunEnd("error", "the run was interrupted", cut=True), _Changes(run)
     try:
         end = _loop(run, changes)
-        if why := run.invalid():
-            end = RunEnd("invalid", f"{why}; the run ended {end.outcome}")
     except KeyboardInterrupt:
-        end = RunEnd("safe_hold", "interrupted by the operator")
+        end = RunEnd("safe_hold", "interrupted by the operator", cut=True)
     except Exception as defect:
         end = ended_by(defect)
     finally:
@@ -68,7 +71,7 @@ def execute(run: Run) -> RunEnd:
 
 def ended_by(defect: BaseException) -> RunEnd:
     """The end of a run that a defect cut short."""
-    return RunEnd("error", _one_line(defect), defect)
+    return RunEnd("error", _one_line(defect), defect, cut=True)
 
 
 def _loop(run: Run, changes: _Changes) -> RunEnd:
@@ -76,7 +79,8 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
     limit_ticks = run.services.clock.ticks_for(run.time_limit_s)
     sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
     while True:
-        now = run.services.classification.sense(run.services.devices)
+        with watch.measure("tick"):
+            now = run.services.classification.sense(run.services.devices)
         run.each_tick()
         with watch.measure("tick"):
             run.root.tick_once()
@@ -98,7 +102,8 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
 
 def _ended(run: Run) -> RunEnd:
     if run.root.status is Status.SUCCESS:
-        return RunEnd("reached", None)
+        missed = run.journal.missed()
+        return RunEnd("safe_hold", missed) if missed else RunEnd("reached", None)
     failure = run.trace.last_failure
     reason = f"{failure[1].reason}: {failure[1].detail}" if failure else None
     call = run.journal.called
@@ -109,11 +114,21 @@ def _ended(run: Run) -> RunEnd:
 
 def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
     """Terminate every entered leaf, stop the rover, close the record; each whatever becomes of the others."""
+
+    def judge() -> None:
+        """Look for the last evidence, whatever the end; a run that came to its end may prove nothing."""
+        nonlocal end
+        why = run.invalid()
+        if why and not end.cut:
+            end = RunEnd("invalid", f"{why}; the run ended {end.outcome}")
+
     steps: tuple[Callable[[], object], ...] = (
         changes.write,
         run.trace.terminate_entered,
         changes.write,
         run.backend.safe_stop,
+        lambda: _see_it_rest(run),
+        judge,
         lambda: run.journal.write(events.Stop(end.outcome, end.reason)),
         run.recorder.close,
         run.backend.close,
@@ -124,8 +139,16 @@ def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
         except KeyboardInterrupt:
             continue  # the rest has priority over whoever is in a hurry
         except Exception as defect:
-            end = RunEnd("error", _one_line(end.defect or defect), end.defect or defect)
+            end = ended_by(end.defect or defect)
     return end
+
+
+def _see_it_rest(run: Run) -> None:
+    """A tick to settle, one that must find it there, and a report: a stop nobody saw proves nothing."""
+    run.backend.advance()
+    run.backend.advance()
+    now = run.services.classification.sense(run.services.devices)
+    run.journal.telemetry(now, run.services.devices, run.services.classification.predicted())
 
 
 def _one_line(defect: BaseException) -> str:
@@ -151,15 +174,16 @@ class _Changes:
         self._outcomes[path] = outcome
 
     def _changed(self) -> Iterator[tuple[str, Status]]:
+        last, ended_again = self._last, self._outcomes
         for path, node in self._run.paths.items():
-            ended_again = path in self._outcomes
-            if node.status is not self._last[path] or ended_again:
-                self._last[path] = node.status
-                yield path, node.status
+            status = node.status
+            if status is not last[path] or path in ended_again:
+                last[path] = status
+                yield path, status
 
     def _event(self, path: str, status: Status) -> events.NodeChange:
         outcome = self._outcomes.get(path)
-        if outcome is None or not isinstance(self._run.paths[path], Leaf):
+        if outcome is None or not isinstance(self._run.paths[path], Leaf | Guarded):
             return events.NodeChange(path, status.value.lower())
         reason = "" if outcome.reason is Reason.DONE else str(outcome.reason)
         return events.NodeChange(path, status.value.lower(), reason, outcome.detail)

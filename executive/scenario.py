@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +13,10 @@ from pydantic import BaseModel
 from executive import plugins
 from executive.backends import BackendSpec
 from executive.chance import generator
+from executive.config.expect import Expect, with_lists
 from executive.config.find import find, portable, shown
 from executive.config.mission import mission_problems
-from executive.config.models import Expect, MissionFile, ScenarioFile
+from executive.config.models import MissionFile, ScenarioFile
 from executive.config.overrides import override
 from executive.config.rig_overrides import rig_fields, rig_from
 from executive.config.source import Place, Source, read
@@ -23,11 +24,12 @@ from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
 from executive.distributions import drawn
 from executive.errors import ConfigError, Problem
+from executive.expected import expect_problems
 from executive.fault_entries import ResolvedFault, Setting, fault_entries, ungrouped
 from executive.pool_plugins import load_strategies, strategy_trees
 from executive.rig import RigCalibration
 from executive.tree.literals import literal
-from executive.tree.load import load_tree
+from executive.tree.load import Instead, load_tree
 from executive.tree.spec import TreeSpec, walk
 
 
@@ -43,6 +45,8 @@ class ResolvedScenario:
     backend: BackendSpec
     inputs: Mapping[str, object]
     """The mission's `tree_inputs`, in SI, for the tree's ports of these names."""
+    instead: Instead = field(default_factory=dict)
+    """Texts that stand for tree files in this run."""
 
     @property
     def name(self) -> str:
@@ -68,6 +72,12 @@ class ResolvedScenario:
     def time_limit_s(self) -> float:
         return self.file.time_limit
 
+    def with_trees(self, instead: Instead) -> ResolvedScenario:
+        """The same run if these tree files said something else; ConfigError where that cannot be loaded."""
+        tree = load_tree(self.mission.tree, instead=instead)
+        strategy_trees(load_strategies(), instead)
+        return replace(self, tree=tree, instead=instead)
+
     def dump(self) -> str:
         """YAML with every default written; resolves to an equal value, bit for bit."""
         data = self.file.model_dump(mode="json", by_alias=True, exclude_none=True)
@@ -92,7 +102,14 @@ def resolve_scenario(
     ConfigError with every problem found; PluginError when the backend named cannot be loaded.
     """
     path = Path(path)
-    source = as_scenario(read(path, shown(path)))
+    return resolve_source(read(path, shown(path)), seed, tier, overrides)
+
+
+def resolve_source(
+    source: Source, seed: int | None = None, tier: str | None = None, overrides: Sequence[str] = ()
+) -> ResolvedScenario:
+    """The same from a file already read, or from a part of one."""
+    source = as_scenario(source)
     for number, text in enumerate(overrides, 1):
         source = override(source, text, number)
     source = _with_value(source, "seed", seed)
@@ -103,7 +120,7 @@ def resolve_scenario(
 def resolve(source: Source) -> ResolvedScenario:
     """The same from data already read."""
     problems = Problems()
-    source = ungrouped(source, ("faults",))
+    source = ungrouped(with_lists(source), ("faults",))
     seed = source.data.get("seed", 0) if isinstance(source.data, dict) else 0
     if isinstance(seed, int):  # what else it may be is told where the file is read
         source = problems.attempt(lambda: _drawn(source, abs(seed))) or source
@@ -115,16 +132,17 @@ def resolve(source: Source) -> ResolvedScenario:
     rig = problems.attempt(lambda: rig_from(source, ("rig",)))
     setting = _setting(source, backend_name)
     faults = problems.attempt(lambda: fault_entries(source, ("faults",), setting))
+    problems.found.extend(expect_problems(source, faults))
     tree_path = problems.attempt(lambda: _tree_path(source))
     tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
     inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
     if tree is not None and faults:
-        problems.found.extend(_unknown_nodes(source, faults, tree))
-        problems.found.extend(_unknown_targets(source, faults, tree))
+        names = _node_names(tree)
+        problems.found.extend(_unknown_nodes(source, faults, tree, names))
+        problems.found.extend(_unknown_targets(source, faults, tree, names))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
-        problems.found.extend(_not_yet(source))
         if backend is not None:
             problems.attempt(lambda: _check_tier(source, file.tier, backend))
         if backend is not None and world is not None and not impossible:
@@ -250,31 +268,36 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
     return values
 
 
-def _unknown_nodes(source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec) -> list[Problem]:
+def _unknown_nodes(
+    source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec, names: set[str]
+) -> list[Problem]:
     """Faults that wait for a node which neither the tree nor a strategy has: they could never fire."""
     waited: list[tuple[Place, str]] = [
         (("faults", i, "from", "node"), f.start.node)
         for i, f in enumerate(faults)
         if f.start.node is not None
     ]
-    return _strangers(
-        source, waited, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
-    )
+    return _strangers(source, waited, names, f"the node {{}}, which the tree {tree.name} does not have")
 
 
-def _unknown_targets(source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec) -> list[Problem]:
-    """Faults of a node or a strategy that is not there."""
+def _unknown_targets(
+    source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec, names: set[str]
+) -> list[Problem]:
+    """Faults of a node, a value or a strategy that is not there."""
     nodes: list[tuple[Place, str]] = []
+    values: list[tuple[Place, str]] = []
     strategies: list[tuple[Place, str]] = []
     for i, fault in enumerate(faults):
-        for parameter, found in ((fault.spec.node, nodes), (fault.spec.strategy, strategies)):
+        named = ((fault.spec.node, nodes), (fault.spec.value, values), (fault.spec.strategy, strategies))
+        for parameter, found in named:
             value = getattr(fault.parameters, parameter) if parameter else None
             if parameter and value is not None:
                 found.append((("faults", i, fault.spec.name, parameter), value))
     known = set(plugins.found(plugins.STRATEGIES))
     return [
+        *_strangers(source, nodes, names, f"the node {{}}, which the tree {tree.name} does not have"),
         *_strangers(
-            source, nodes, _node_names(tree), f"the node {{}}, which the tree {tree.name} does not have"
+            source, values, _value_names(tree), f"the value {{}}, which the tree {tree.name} does not have"
         ),
         *_strangers(source, strategies, known, "the unknown strategy {}"),
     ]
@@ -284,6 +307,13 @@ def _node_names(tree: TreeSpec) -> set[str]:
     """What the nodes of a tree and of every strategy's tree are called."""
     trees = (tree, *strategy_trees(load_strategies()).values())
     return {node.name for each in trees for _, node in walk(each)}
+
+
+def _value_names(tree: TreeSpec) -> set[str]:
+    """What the values of a tree and of all its sub-trees are called, and of every strategy's."""
+    trees = (tree, *strategy_trees(load_strategies()).values())
+    inner = (node.tree for each in trees for _, node in walk(each) if node.tree is not None)
+    return {name for each in (*trees, *inner) for name in each.values}
 
 
 def _strangers(source: Source, named: list[tuple[Place, str]], known: set[str], got: str) -> list[Problem]:
@@ -298,9 +328,3 @@ def _check_tier(source: Source, tier: str, backend: BackendSpec) -> None:
     if tier not in backend.tiers:
         message = f'got "{tier}", expected a tier of {backend.name}: {listed(backend.tiers)}'
         raise ConfigError([source.at(("tier",)).problem(message)])
-
-
-def _not_yet(source: Source) -> list[Any]:
-    places: list[Place] = [("expect", "always"), ("expect", "eventually")]
-    message = "temporal logic is not judged yet; expected a scenario without it"
-    return [source.key_at(place).problem(message) for place in places if place in source.values]

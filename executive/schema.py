@@ -6,20 +6,29 @@ import copy
 from enum import Enum
 from typing import Any
 
+from executive import fault_schema
+from executive.config.expect import LISTS
 from executive.config.models import MissionFile, ScenarioFile
+from executive.file_kinds import file_kind, file_kinds
 from executive.nodes.base import REQUIRED, Direction, PortSpec
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.file import TreeFile
 from executive.tree.spec import GUARDS
 from executive.values import VALUE_TYPES
 
-KINDS = ("tree", "mission", "scenario")
+_OWN = ("tree", "mission", "scenario")
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
+def kinds() -> tuple[str, ...]:
+    """Every kind of file that has a schema."""
+    return (*_OWN, *file_kinds())
+
+
 def schema(kind: str) -> dict[str, Any]:
-    """The schema of a tree, mission or scenario file."""
-    made = {"tree": _tree, "mission": _mission, "scenario": _scenario}[kind]()
+    """The schema of one kind of file. PluginError when the plug-in that reads it cannot be loaded."""
+    own = {"tree": _tree, "mission": _mission, "scenario": _scenario}
+    made = own[kind]() if kind in own else file_kind(kind).schema()
     return {"$schema": DIALECT, "title": f"Longarm {kind}"} | made
 
 
@@ -32,6 +41,11 @@ def _scenario() -> dict[str, Any]:
     inline = copy.deepcopy(made["properties"]["mission"])
     name = {"type": "string", "description": "a mission file: a path or a bare name"}
     made["properties"]["mission"] = {"anyOf": [name, inline]}
+    expect = made["$defs"]["Expect"]["properties"]
+    for name_of_list in LISTS:
+        several = {key: expect[name_of_list].pop(key) for key in ("type", "items")}
+        expect[name_of_list]["anyOf"] = [several["items"], several]
+    made["properties"]["faults"] = fault_schema.faults(made["$defs"])
     return made
 
 

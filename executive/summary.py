@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from executive.app import Finished
+from executive.rows import worst_first
 
 
 def show(finished: Finished) -> None:
@@ -20,9 +23,27 @@ def show(finished: Finished) -> None:
     for name, value in _figures(result):
         table.add_row(name, value)
     console.print(table)
-    for row in result["expectations"]:
-        console.print(f"  {'[green]met[/]' if row['met'] else '[red]not met[/]'}  {row['text']}")
+    for row in worst_first(result["expectations"]):
+        console.print(f"  {_verdict(row)}  {escape(_told(row))}", highlight=False, soft_wrap=True)
+    for row in worst_first(row for row in result["safety"] if row["met"] is False):
+        console.print(f"  [red]unsafe[/]   {escape(_told(row))}", highlight=False, soft_wrap=True)
     console.print(f"report: {finished.folder / 'report.html'}", highlight=False, soft_wrap=True)
+
+
+def _verdict(row: Mapping[str, Any]) -> str:
+    return "[green]met[/]    " if row["met"] else "[red]not met[/]"
+
+
+def _told(row: Mapping[str, Any]) -> str:
+    """The expectation; where it is not met, since when and by how much; and what to doubt of it."""
+    found = [row["text"]]
+    if row["t_violation_s"] is not None:
+        found.append(f"from {row['t_violation_s']:.0f} s")
+    if row["met"] is False and row["robustness"] is not None:
+        found.append(f"by {-row['robustness']:.3g} {row['unit']}".rstrip())
+    if row["warning"]:
+        found.append(row["warning"])
+    return ", ".join(found)
 
 
 def _figures(result: dict[str, Any]) -> list[tuple[str, str]]:

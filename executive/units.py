@@ -116,6 +116,14 @@ def name_of(what: Dimension) -> str:
 
 
 @lru_cache(4096)
+def si_unit(what: Dimension) -> str:
+    """The unit that values of this dimension carry inside: `m`, `rad`, nothing for a plain number."""
+    if what == PLAIN:
+        return ""
+    return next((kind.unit for kind in KINDS if dimension(kind.unit) == what), name_of(what))
+
+
+@lru_cache(4096)
 def parse(text: str) -> tuple[float, Dimension]:
     """`"30 mm"` → (0.03, length), correctly rounded; UnitError otherwise."""
     match = _QUANTITY.fullmatch(text)
@@ -188,7 +196,14 @@ def of_kind(kind: Kind) -> Any:
     return (
         BeforeValidator(read),
         PlainSerializer(lambda value: written(value, kind.unit), return_type=str, when_used="json"),
-        WithJsonSchema({"type": "string", "description": articled(kind.name), "examples": [kind.example]}),
+        WithJsonSchema(
+            {
+                "type": "string",
+                "format": articled(kind.name),
+                "description": articled(kind.name),
+                "examples": [kind.example],
+            }
+        ),
     )
 
 

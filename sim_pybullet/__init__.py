@@ -25,6 +25,11 @@ def _problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldProble
     return world_problems(world, route)
 
 
+def _preload() -> None:
+    import sim_pybullet.backend
+    import sim_pybullet.world_check  # noqa: F401  (imported for the next to find)
+
+
 BACKEND = BackendSpec(
     name="pybullet",
     doc="The rover, the ground and the lander's head in PyBullet, with images in linear radiometry.",
@@ -32,4 +37,5 @@ BACKEND = BackendSpec(
     tiers=("full", "geometric"),
     create=_create,
     problems=_problems,
+    preload=_preload,
 )

@@ -15,6 +15,7 @@ from executive.rig import RigCalibration
 from executive.types import Point, Segment
 from sim_pybullet.cameras import make_cameras
 from sim_pybullet.config import WorldConfig
+from sim_pybullet.exposing import ExposureLog
 from sim_pybullet.link import SimLink
 from sim_pybullet.sunlight import Sun
 from sim_pybullet.terrain import area_of
@@ -27,6 +28,8 @@ MAP_MARGIN_M = 1.0
 
 class TickedCameras(Cameras, Protocol):
     """Cameras that expose as time passes."""
+
+    log: ExposureLog
 
     def tick(self) -> None:
         """Expose what is due now; called once after each tick of time."""
@@ -54,7 +57,7 @@ class SimBackend:
         self._truth.ground(self.world.terrain.crop(near.low_site_m, near.high_site_m), self.world.rocks)
         self._cameras = make(self.world, self.clock, self.rig, self._watch)
         self._link = SimLink(self.clock)
-        self.world_faults = WorldFaults(self.world)
+        self.world_faults = WorldFaults(self.world, self._cameras.log)
         self.devices = Devices(
             tracks=self.world.tracks,
             cabin=self.world.cabin,

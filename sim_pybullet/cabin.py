@@ -30,6 +30,8 @@ class SimCabin:
         self._calibration, self._clock, self._rng = calibration, clock, rng
         self._true_angles = true_angles
         self._arm, self._cabin = Axis(0.0, calibration.speed_rad_s), Axis(0.0, calibration.speed_rad_s)
+        self._seized_arm_rad: float | None = None
+        self._seized_against_arm_rad: float | None = None
         self._action: DeviceAction[CabinReading] | None = None
         self._reading = PerTick(self._measure, lambda: clock.ticks)
 
@@ -40,8 +42,30 @@ class SimCabin:
 
     @property
     def targets_rad(self) -> tuple[float, float]:
-        """Where the motors hold the joints now: arm, cabin."""
+        """Where the joints are held now: arm, cabin. A seized one stays behind its motor."""
+        arm_rad, cabin_rad = self._motors_rad
+        if self._seized_arm_rad is not None:
+            arm_rad, cabin_rad = self._seized_arm_rad, cabin_rad - arm_rad + self._seized_arm_rad
+        if self._seized_against_arm_rad is not None:
+            cabin_rad = arm_rad - self._seized_against_arm_rad
+        return arm_rad, cabin_rad
+
+    @property
+    def behind_rad(self) -> float:
+        """How far the joints are behind their motors, the worse of the two."""
+        return max(abs(m - a) for m, a in zip(self._motors_rad, self._true_angles(), strict=True))
+
+    @property
+    def _motors_rad(self) -> tuple[float, float]:
         return self._arm.angle_rad, self._cabin.angle_rad
+
+    def seize_arm(self, seized: bool) -> None:
+        """Let the arm's joint seize where it stands, or come free."""
+        self._seized_arm_rad = self._arm.angle_rad if seized else None
+
+    def seize_cabin(self, seized: bool) -> None:
+        """Let the cabin's joint, which turns it against the arm, seize where it stands, or come free."""
+        self._seized_against_arm_rad = self._arm.angle_rad - self._cabin.angle_rad if seized else None
 
     def move(self, arm_rad: float, cabin_rad: float) -> Action[CabinReading]:
         """Move both joints; a move under way ends CANCELLED."""
@@ -72,7 +96,7 @@ class SimCabin:
         """End the move where both motors have arrived, or where a joint does not follow."""
         if self._action is None:
             return
-        lag = max(abs(t - a) for t, a in zip(self.targets_rad, self._true_angles(), strict=True))
+        lag = self.behind_rad
         if lag > LAG_LIMIT_RAD:
             self._end(Reason.BLOCKED, f"a joint lags {math.degrees(lag):.1f} deg behind its motor")
         elif self._arm.arrived and self._cabin.arrived:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from executive.clock import Clock
@@ -23,16 +24,37 @@ class Developer(Protocol):
     ) -> Answer: ...
 
 
+@dataclass
+class ExposureLog:
+    """How many frames were exposed so far, and in how many of them each LED's line was driven."""
+
+    frames: int = 0
+    driven: list[int] = field(default_factory=lambda: [0] * 4)
+
+    def note(self, lines: int) -> None:
+        """Count one frame."""
+        self.frames += 1
+        for line in range(len(self.driven)):
+            self.driven[line] += lines >> line & 1
+
+
 class Exposing:
     """The action of one shot. Frame i is exposed `i * cadence_s` after the start."""
 
     def __init__(
-        self, shot: Shot, clock: Clock, scene: SceneSource, head: HeadReading, developer: Developer
+        self,
+        shot: Shot,
+        clock: Clock,
+        scene: SceneSource,
+        head: HeadReading,
+        developer: Developer,
+        log: ExposureLog,
     ) -> None:
         self._shot, self._clock, self._scene = shot, clock, scene
         self._head, self._developer = head, developer
         self._start_s = clock.now_s
         self._scenes: list[SceneState] = []
+        self._log = log
         self._outcome: Outcome[Answer] | None = None
         self.see()
 
@@ -43,6 +65,7 @@ class Exposing:
         now: SceneState | None = None
         while len(self._scenes) < len(self._shot.leds) and self._due(len(self._scenes)):
             now = now or self._scene()
+            self._log.note(self._shot.leds[len(self._scenes)])
             self._scenes.append(now)
 
     def poll(self) -> Outcome[Answer] | None:
@@ -87,6 +110,7 @@ class SimCameras:
         self._rig, self._clock, self._scene, self._head = rig, clock, scene, head
         self._developer = developer
         self._under_way: Exposing | None = None
+        self.log = ExposureLog()
 
     def take(self, shot: Shot) -> Exposing | Refused:
         """Start a shot; one under way ends CANCELLED. OUT_OF_REACH for windows beyond the frame."""
@@ -94,7 +118,7 @@ class SimCameras:
         complaint = self._complaint(shot)
         if complaint is not None:
             return Refused(Outcome(Reason.OUT_OF_REACH, complaint))
-        self._under_way = Exposing(shot, self._clock, self._scene, self._head(), self._developer)
+        self._under_way = Exposing(shot, self._clock, self._scene, self._head(), self._developer, self.log)
         return self._under_way
 
     def tick(self) -> None:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Shot, Window
 from sim_pybullet.error_model import JOINT_EXCESS, CentreError, centre_error, joint_chance
 from sim_pybullet.exposing import full_windows
 from sim_pybullet.leds import MarkerOptics, Spot
-from sim_pybullet.projection import head_views
+from sim_pybullet.projection import View, scene_views
 from sim_pybullet.radiometry import Exposure, spread_reach_px
 from sim_pybullet.scene import SceneState
 
 CENTROID_SIGMA_PX = 15.0  # motion fragments: where the middle of a moving rover seems to be
+LIGHT_CHANGE, SHIFT_PX = 0.05, 0.5
+"""How far a frame may be from the mean of its shot; beyond, the detector refuses the images."""
 _ROVER_MIDDLE_BODY_M = np.array([0.0, 0.0, 0.065])
 
 
@@ -37,7 +41,7 @@ class CentreDeveloper:
         windows = shot.windows or full_windows(self._rig)
         for camera in (LEFT, RIGHT):
             if any(shot.leds):
-                found = self._markers(shot, scenes[-1], camera, windows[camera])
+                found = self._markers(shot, scenes, camera, windows[camera])
             else:
                 found = self._middle(scenes, camera, windows[camera])
             for index, (centre, sigma) in found.items():
@@ -45,12 +49,15 @@ class CentreDeveloper:
         return Centres(time_s, shot, uv_px, sigma_px, head)
 
     def _markers(
-        self, shot: Shot, scene: SceneState, camera: int, window: Window
+        self, shot: Shot, scenes: tuple[SceneState, ...], camera: int, window: Window
     ) -> dict[int, tuple[Array, float]]:
-        view = head_views(self._rig, scene.head_pan_rad, scene.head_tilt_rad)[camera]
-        spots = self._optics.spots(scene, view)
+        scene = scenes[-1]
+        view = scene_views(self._rig, scene)[camera]
+        exposure = self._exposure.under(scene.seeing.light + view.lens.veil)
+        lost = exposure.ground_e >= exposure.full_well_e or not steady(scenes, view)
+        spots = self._as_wired(scene, self._brightest(scene, view, window))
         coded = any(leds & (leds - 1) for leds in shot.leds)
-        errors = [self._error(shot, index, spot, coded) for index, spot in enumerate(spots)]
+        errors = [_error(shot, index, spot, exposure, coded) for index, spot in enumerate(spots)]
         together = joint_chance(errors) if coded else None
         found = {}
         luck = None
@@ -59,24 +66,33 @@ class CentreDeveloper:
             chance, noise = self._rng.uniform(), self._rng.standard_normal(2)
             luck = chance if luck is None or together is None else luck
             shows = error.snr > 0 and luck < (error.found if together is None else together)
-            if shows and _within(spot, window):
+            if shows and not lost and _within(spot, window):
                 centre = np.array([spot.u_px, spot.v_px]) + noise * (error.sigma_u_px, error.sigma_v_px)
                 found[index] = (centre, error.reported_px)
         return found
 
-    def _error(self, shot: Shot, index: int, spot: Spot, coded: bool) -> CentreError:
-        """One marker's error: against the dark frames, or in a code against all where it is off."""
-        lit = sum(leds >> index & 1 for leds in shot.leds)
-        if coded:
-            return centre_error(spot, self._exposure, lit, len(shot.leds) - lit, JOINT_EXCESS)
-        return centre_error(spot, self._exposure, lit, shot.leds.count(0))
+    def _as_wired(self, scene: SceneState, spots: list[Spot]) -> list[Spot]:
+        """The spots in the order in which the sequencer means to light them; one always lit shows nothing."""
+        dark = scene.seeing.always_lit
+        return [
+            replace(spots[led], electrons=0.0) if dark >> led & 1 else spots[led]
+            for led in scene.seeing.wiring[: len(spots)]
+        ]
+
+    def _brightest(self, scene: SceneState, view: View, window: Window) -> list[Spot]:
+        """Of each LED and its reflections in the window, the one that a detector would take for it."""
+        spots = self._optics.spots(scene, view)
+        for led, glint in self._optics.glints(scene, view):
+            if _within(glint, window):
+                spots[led] = max(spots[led], glint, key=lambda spot: spot.electrons)
+        return spots
 
     def _middle(
         self, scenes: tuple[SceneState, ...], camera: int, window: Window
     ) -> dict[int, tuple[Array, float]]:
         seen = []
         for scene in scenes:
-            view = head_views(self._rig, scene.head_pan_rad, scene.head_tilt_rad)[camera]
+            view = scene_views(self._rig, scene)[camera]
             T = scene.T_site_body
             seen.append(view.project(T[:3, :3] @ _ROVER_MIDDLE_BODY_M + T[:3, 3])[0])
         middle = np.mean(seen, axis=0)
@@ -88,6 +104,14 @@ class CentreDeveloper:
         return {0: (middle + noise, CENTROID_SIGMA_PX)} if inside else {}
 
 
+def _error(shot: Shot, index: int, spot: Spot, exposure: Exposure, coded: bool) -> CentreError:
+    """One marker's error: against the dark frames, or in a code against all where it is off."""
+    lit = sum(leds >> index & 1 for leds in shot.leds)
+    if coded:
+        return centre_error(spot, exposure, lit, len(shot.leds) - lit, JOINT_EXCESS)
+    return centre_error(spot, exposure, lit, shot.leds.count(0))
+
+
 def _within(spot: Spot, window: Window) -> bool:
     """Whether the whole spot falls into the window."""
     reach = spread_reach_px(spot.size_px, spot.sigma_px) / 2
@@ -95,3 +119,12 @@ def _within(spot: Spot, window: Window) -> bool:
         window.u + reach <= spot.u_px <= window.u + window.width - 1 - reach
         and window.v + reach <= spot.v_px <= window.v + window.height - 1 - reach
     )
+
+
+def steady(scenes: tuple[SceneState, ...], view: View) -> bool:
+    """Whether the frames of a shot show one scene: the same light, from a head that stands still."""
+    light = np.array([scene.seeing.light for scene in scenes])
+    head = np.array([(scene.head_pan_rad, scene.head_tilt_rad) for scene in scenes])
+    change = np.abs(light - light.mean()).max()
+    shift_px = view.camera.focal_px * np.hypot(*(head - head.mean(axis=0)).T).max()
+    return bool(change <= LIGHT_CHANGE and shift_px <= SHIFT_PX)

@@ -41,9 +41,10 @@ class ImageDeveloper:
         for masks in alike.values():
             scene = scenes[next(iter(masks.values()))[0]]
             unlit_e = self._picture.unlit_e(scene, camera, window)
-            spots = self._picture.spots(scene, camera)
+            spots, glints = self._picture.spots(scene, camera), self._picture.glints(scene, camera)
             for leds, frames in masks.items():
-                self._expose(counts, frames, self._picture.lit_e(unlit_e, spots, leds, window))
+                lit_e = self._picture.lit_e(unlit_e, spots, scene.seeing.lit(leds), window, glints)
+                self._expose(counts, frames, lit_e)
         return counts
 
     def _expose(self, counts: NDArray[np.uint16], frames: list[int], expected_e: NDArray[np.float32]) -> None:
@@ -62,4 +63,5 @@ def _looks(scene: SceneState) -> object:
         scene.rocks,
         scene.led_alive,
         scene.led_factor,
+        scene.seeing,
     )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,8 @@ from executive.types import Array, Window
 from sim_pybullet.projection import View
 from sim_pybullet.radiometry import MarkerLight, emission_factor, pixel_spread, spread_sigma_px
 from sim_pybullet.raycast import HeightField
-from sim_pybullet.scene import Box, Rock, SceneState
+from sim_pybullet.scene import Box, Rock, SceneState, screens
+from sim_pybullet.seeing import Glint
 from sim_pybullet.shape import rover_boxes
 
 _DOME_M = 0.0015  # the light leaves this far above the marker plane
@@ -40,6 +42,19 @@ class MarkerOptics:
         """What each marker would be in this view if it were lit, in order of index."""
         return [self._spot(index, scene, view) for index in range(len(self.rig.markers.positions_plc_m))]
 
+    def glints(self, scene: SceneState, view: View) -> list[tuple[int, Spot]]:
+        """The reflections in this view, each with the LED that it shines with, if that were lit."""
+        return [(glint.led, self._glint(glint, scene, view)) for glint in scene.seeing.glints]
+
+    def _glint(self, glint: Glint, scene: SceneState, view: View) -> Spot:
+        T = scene.T_site_body
+        position = T[:3, :3] @ np.array(glint.position_body_m) + T[:3, 3]
+        led = self._spot(glint.led, scene, view)
+        uv, _ = view.project(position)
+        seen = np.isfinite(uv).all() and not self.hidden(scene, position, view.position_site_m)
+        electrons = glint.strength * led.electrons if seen else 0.0
+        return replace(led, u_px=float(uv[0]), v_px=float(uv[1]), electrons=electrons)
+
     def _spot(self, index: int, scene: SceneState, view: View) -> Spot:
         T = scene.T_site_plc
         position = T[:3, :3] @ np.array(self.rig.markers.positions_plc_m[index]) + T[:3, 3]
@@ -56,7 +71,7 @@ class MarkerOptics:
             u_px=float(uv[0]),
             v_px=float(uv[1]),
             size_px=view.camera.focal_px * self.rig.markers.size_m / float(depth),
-            sigma_px=spread_sigma_px(self.rig.sensor, range_m),
+            sigma_px=math.hypot(spread_sigma_px(self.rig.sensor, range_m), view.lens.blur_px),
             electrons=self._light.electrons(range_m, emission, scene.led_factor[index]),
         )
 
@@ -64,7 +79,7 @@ class MarkerOptics:
         """Whether rover, rocks or ground stand between a point and the camera."""
         return (
             any(_box_blocks(box, scene, source_site_m, eye_site_m) for box in self._boxes)
-            or any(_rock_blocks(rock, source_site_m, eye_site_m) for rock in scene.rocks)
+            or any(rock_blocks(r, source_site_m, eye_site_m) for r in (*scene.rocks, *screens(scene)))
             or self._field.blocks(source_site_m, eye_site_m)
         )
 
@@ -97,7 +112,8 @@ def _box_blocks(box: Box, scene: SceneState, start: Array, end: Array) -> bool:
     return max(first, 0.0) < min(last, 1.0)
 
 
-def _rock_blocks(rock: Rock, start: Array, end: Array) -> bool:
+def rock_blocks(rock: Rock, start: Array, end: Array) -> bool:
+    """Whether the straight line between two points of `site` passes through a rock."""
     line, to_centre = end - start, np.asarray(rock.centre_site_m) - start
     share = float(np.clip((to_centre @ line) / (line @ line), 0, 1))
     return bool(np.linalg.norm(to_centre - share * line) < rock.radius_m)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
@@ -11,12 +13,12 @@ from numpy.typing import NDArray
 from executive.rig import RigCalibration
 from executive.types import Window
 from sim_pybullet.leds import MarkerOptics, Spot, add_spot
-from sim_pybullet.projection import View, head_views
+from sim_pybullet.projection import View, scene_views
 from sim_pybullet.radiometry import Exposure, calibrated_light, spread_sigma_px
 from sim_pybullet.render import TerrainRenderer
 from sim_pybullet.rocks_view import draw_rock, far_first
 from sim_pybullet.rover_view import RoverRenderer
-from sim_pybullet.scene import SceneState
+from sim_pybullet.scene import SceneState, screens
 from sim_pybullet.sunlight import Sun
 from sim_pybullet.terrain import Terrain
 
@@ -32,6 +34,7 @@ class Picture:
     def __init__(self, rig: RigCalibration, terrain: Terrain, sun: Sun, rng: np.random.Generator) -> None:
         self.rig = rig
         self.exposure = Exposure(rig.sensor.bits)
+        self._first_sun = sun
         self._ground = TerrainRenderer(terrain, sun, rng)
         self._rover = RoverRenderer(rig, sun, self._ground.field)
         self._markers = MarkerOptics(rig, calibrated_light(rig), self._ground.field)
@@ -39,10 +42,11 @@ class Picture:
 
     def view(self, scene: SceneState, camera: int) -> View:
         """The camera (LEFT or RIGHT) as it truly stands."""
-        return head_views(self.rig, scene.head_pan_rad, scene.head_tilt_rad)[camera]
+        return scene_views(self.rig, scene)[camera]
 
     def unlit_e(self, scene: SceneState, camera: int, window: Window) -> Image:
         """Expected image (h, w) with every LED off [e-]."""
+        self._follow(scene.seeing.sun or self._first_sun)
         view = self.view(scene, camera)
         ground, range_m = self._ground_of(scene, camera, view, window)
         image = ground.copy()
@@ -53,31 +57,52 @@ class Picture:
         for rock in before:
             draw_rock(image, range_m, rock, self._ground.field, self._ground.sun, view, window)
         self._rover.draw(image, scene, view, window)
-        for rock in rocks[len(before) :]:
+        for rock in (*rocks[len(before) :], *screens(scene)):
             draw_rock(image, range_m, rock, self._ground.field, self._ground.sun, view, window)
         # One blur for the whole image, that of the rover's range: it is what the picture is taken for.
-        blur_px = spread_sigma_px(self.rig.sensor, max(rover_m, _NEAREST_M))
+        spread_px = spread_sigma_px(self.rig.sensor, max(rover_m, _NEAREST_M))
+        blur_px = math.hypot(spread_px, view.lens.blur_px)
         blurred = cv2.GaussianBlur(image, (0, 0), blur_px, borderType=cv2.BORDER_REPLICATE)
-        return np.asarray(blurred * np.float32(self.exposure.ground_e))
+        lit = blurred * np.float32(self.exposure.ground_e * scene.seeing.light)
+        return np.asarray(lit + np.float32(self.exposure.ground_e * view.lens.veil))
 
     def spots(self, scene: SceneState, camera: int) -> list[Spot]:
         """The markers as they would show in this camera if lit."""
         return self._markers.spots(scene, self.view(scene, camera))
 
-    def lit_e(self, unlit_e: Image, spots: list[Spot], leds: int, window: Window) -> Image:
-        """The unlit image with the LEDs of the mask `leds` (bit i = marker i) added [e-]."""
+    def glints(self, scene: SceneState, camera: int) -> list[tuple[int, Spot]]:
+        """Their reflections, each with its LED."""
+        return self._markers.glints(scene, self.view(scene, camera))
+
+    def lit_e(
+        self,
+        unlit_e: Image,
+        spots: list[Spot],
+        leds: int,
+        window: Window,
+        glints: Sequence[tuple[int, Spot]] = (),
+    ) -> Image:
+        """The unlit image with the LEDs of the mask `leds` (bit i = marker i) and their glints added [e-]."""
         image = unlit_e.copy()
-        for index, spot in enumerate(spots):
+        for index, spot in (*enumerate(spots), *glints):
             if leds >> index & 1:
                 add_spot(image, spot, window)
         return image
+
+    def _follow(self, sun: Sun) -> None:
+        """Light the scene anew once the sun has moved."""
+        if sun != self._ground.sun:
+            self._ground.shine(sun)
+            self._rover.sun = sun
+            self.forget()
 
     def forget(self) -> None:
         """Drop the kept ground, as after a change of the world."""
         self._kept.clear()
 
     def _ground_of(self, scene: SceneState, camera: int, view: View, window: Window) -> tuple[Image, Image]:
-        key = (scene.head_pan_rad, scene.head_tilt_rad, camera, window, scene.rocks)
+        lander = (scene.seeing.lander_shift_m, scene.seeing.lander_turn_rad)
+        key = (scene.head_pan_rad, scene.head_tilt_rad, lander, camera, window, scene.rocks)
         if key not in self._kept:
             self._kept[key] = self._ground.ground(view, window, scene.rocks)
             while len(self._kept) > _KEPT_VIEWS:

@@ -6,12 +6,15 @@ centre of the first pixel. Camera axes: z forward, x right, y down.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from executive.rig import CameraCalibration, RigCalibration
 from executive.types import Array
+from sim_pybullet.scene import SceneState
+from sim_pybullet.seeing import CLEAN, Lens, Seeing
 
 _UNDISTORT_STEPS = 12
 _CAMERA_AXES_IH = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
@@ -24,6 +27,7 @@ class View:
     camera: CameraCalibration
     R_site_cam: Array
     position_site_m: Array
+    lens: Lens = CLEAN
 
     def project(self, points_site_m: Array) -> tuple[Array, Array]:
         """Points (..., 3) to pixels (..., 2) and depths (...) [m]; NaN pixels for points not in front."""
@@ -75,6 +79,24 @@ def head_views(rig: RigCalibration, pan_rad: float, tilt_rad: float) -> tuple[Vi
     """Both cameras for these *true* head angles; the mast's foot is the site's origin."""
     left, right = (_view(rig, camera, pan_rad, tilt_rad) for camera in rig.cameras)
     return left, right
+
+
+def scene_views(rig: RigCalibration, scene: SceneState) -> tuple[View, View]:
+    """Both cameras as they truly stand in a scene, wherever the lander has settled to."""
+    views = head_views(rig, scene.head_pan_rad, scene.head_tilt_rad)
+    left, right = (
+        replace(_settled(view, scene.seeing), lens=lens)
+        for view, lens in zip(views, scene.seeing.lenses, strict=True)
+    )
+    return left, right
+
+
+def _settled(view: View, seeing: Seeing) -> View:
+    if not (any(seeing.lander_shift_m) or any(seeing.lander_turn_rad)):
+        return view
+    turn = Rotation.from_rotvec(seeing.lander_turn_rad).as_matrix()
+    position = turn @ view.position_site_m + seeing.lander_shift_m
+    return replace(view, R_site_cam=turn @ view.R_site_cam, position_site_m=position)
 
 
 def _view(rig: RigCalibration, camera: CameraCalibration, pan_rad: float, tilt_rad: float) -> View:

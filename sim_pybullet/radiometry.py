@@ -7,7 +7,7 @@ so that sunlit level ground of mean albedo fills `GROUND_FRACTION` of the well.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -40,6 +40,10 @@ class Exposure:
     def gain_e(self) -> float:
         """Electrons a count."""
         return self.full_well_e / self.max_count
+
+    def under(self, light: float) -> Exposure:
+        """The same exposure with the ground brighter or darker than it was set for."""
+        return replace(self, ground_e=self.ground_e * light)
 
     @property
     def noise_counts(self) -> float:

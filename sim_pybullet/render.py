@@ -49,10 +49,15 @@ class TerrainRenderer:
 
     def __init__(self, terrain: Terrain, sun: Sun, rng: np.random.Generator) -> None:
         self.field = HeightField(terrain)
-        self.sun = sun
+        self._terrain = terrain
         self._texture = GroundTexture(sun, rng)
-        self._light = ground_light(terrain, sun)
+        self.shine(sun)
         self._origin, self._cell_m = terrain.origin_site_m, terrain.cell_m
+
+    def shine(self, sun: Sun) -> None:
+        """Move the sun: slopes and shadows follow it, the grain of the texture stays as it was lit first."""
+        self.sun = sun
+        self._light = ground_light(self._terrain, sun)
 
     def ground(self, view: View, window: Window, rocks: tuple[Rock, ...] = ()) -> tuple[Image, Image]:
         """Radiance (h, w) of ground and sky relative to sunlit level ground, and range (h, w) [m].

@@ -39,7 +39,7 @@ class RoverRenderer:
 
     def __init__(self, rig: RigCalibration, sun: Sun, field: HeightField) -> None:
         self._solids = rover_solids(rig)
-        self._sun, self._field = sun, field
+        self.sun, self._field = sun, field
 
     def shade_ground(self, image: Image, scene: SceneState, view: View, window: Window) -> None:
         """Darken the ground where the rover keeps the sun off, in place."""
@@ -66,7 +66,7 @@ class RoverRenderer:
         for part in _far_to_near(placed, view.position_site_m):
             for corners, normal, albedo in part.polygons:
                 if (view.position_site_m - corners[0]) @ normal > 0:
-                    canvas.fill(view.project(corners)[0], albedo * float(self._sun.irradiance(normal)))
+                    canvas.fill(view.project(corners)[0], albedo * float(self.sun.irradiance(normal)))
         radiance, cover = canvas.reduced()
         image[canvas.part] = image[canvas.part] * (1 - cover) + radiance
 
@@ -75,7 +75,7 @@ class RoverRenderer:
         foot = scene.T_site_body[:3, 3]
         normal = self._ground_normal(foot)
         ground = np.array([foot[0], foot[1], self._height(foot[0], foot[1])])
-        toward = self._sun.direction_site
+        toward = self.sun.direction_site
         # Ground that leans away from the sun is dark of itself: a bounded shadow does for it.
         along = ((vertices - ground) @ normal) / max(float(toward @ normal), _LEAST_SINE)
         return np.asarray(vertices - np.maximum(along, 0)[:, None] * toward)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from executive.types import Array, Vec3
+from sim_pybullet.seeing import CLEAR, Seeing
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ class SceneState:
     rocks: tuple[Rock, ...] = ()
     led_alive: tuple[bool, bool, bool, bool] = (True, True, True, True)
     led_factor: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    seeing: Seeing = CLEAR
 
     def T_site(self, frame: str) -> Array:  # noqa: N802  transforms keep their capital T
         """T_site_<frame> for `body`, `arm`, `cabin` or `plc`; KeyError for another."""
@@ -56,6 +58,16 @@ class SceneState:
             "cabin": self.T_site_cabin,
             "plc": self.T_site_plc,
         }[frame]
+
+
+def screens(scene: SceneState) -> tuple[Rock, ...]:
+    """What hangs in the way of light near the cabin, as balls in `site`."""
+    T = scene.T_site_plc
+    return tuple(
+        Rock((float(x), float(y), float(z)), screen.radius_m)
+        for screen in scene.seeing.screens
+        for x, y, z in (T[:3, :3] @ screen.centre_plc_m + T[:3, 3],)
+    )
 
 
 SceneSource = Callable[[], SceneState]

@@ -19,7 +19,8 @@ class Soil:
     """One kind of ground. Fractions are of 1; scatters are standard deviations of smooth fields over (x, y).
 
     `yaw_efficiency` is the yaw rate gained over that of ideal tracks; `side_slip` the sideways drift per
-    travel and tangent of the cross slope; `shear_m` is K.
+    travel and tangent of the cross slope; `shear_m` is K. `sinkage` is the share of all belt travel lost in
+    ploughing, whatever the load.
     """
 
     friction: float
@@ -29,6 +30,7 @@ class Soil:
     yaw_scatter: float
     slip_scatter: float
     side_slip: float
+    sinkage: float = 0.0
 
 
 SOILS: dict[str, Soil] = {
@@ -144,4 +146,5 @@ def _fields(soil: Soil) -> tuple[float, ...]:
         soil.yaw_scatter,
         soil.slip_scatter,
         soil.side_slip,
+        soil.sinkage,
     )

@@ -41,6 +41,11 @@ class Sun:
             ]
         )
 
+    def daylight(self, exposed_for: Sun) -> float:
+        """Light on level ground over that under the sun for which the exposure was set."""
+        direct = math.sin(self.height_rad) / math.sin(exposed_for.height_rad)
+        return (1 - SKYLIGHT) * direct + SKYLIGHT
+
     def irradiance(self, normals: Array, lit: Array | NDArray[np.float32] | float = 1.0) -> Array:
         """Light on surfaces with these normals (..., 3), relative to sunlit level ground.
 

@@ -12,6 +12,7 @@ from executive.ports import Action
 from executive.rig import RoverCalibration
 from executive.types import Outcome, Reason, TrackReading
 from sim_pybullet.actions import DeviceAction, PerTick, ended
+from sim_pybullet.motor import Motor
 
 ENCODER_STEP_M = 0.0001
 IDLE_CURRENT_A = 0.045
@@ -21,16 +22,15 @@ CURRENT_SIGMA_A = 0.002
 # rock a track slides on its soil only at 0.3 to 0.4. One motor alone may draw more than both together.
 LIMIT_PER_WEIGHT_BOTH = 0.265
 LIMIT_PER_WEIGHT_ONE = 0.34
+STALL_PER_WEIGHT = 0.40  # what a jammed motor pushes with
 LIMIT_LASTS_S = 8.0  # a step or a stone is overcome sooner
 GAIN_SIGMA = 0.004  # belts differ in length and tension: the systematic error called track synchronism
 
 
 @dataclass
 class _Drive:
-    left_m: float
-    right_m: float
-    left_m_s: float
-    right_m_s: float
+    remaining_m: list[float]
+    speeds_m_s: tuple[float, float]
     action: DeviceAction[TrackReading]
 
 
@@ -43,18 +43,25 @@ class SimTracks:
         self._rover, self._clock, self._rng = rover, clock, rng
         self._weight_n = weight_n
         self.gains = (1.0 + GAIN_SIGMA * rng.standard_normal(), 1.0 + GAIN_SIGMA * rng.standard_normal())
-        self.speed_factors = [1.0, 1.0]  # a weak motor turns less than commanded; its encoder sees that
+        self.motors = (Motor(), Motor())
+        self.driven_m = 0.0  # true travel of both belts so far, whichever way
         self._turned_m = [0.0, 0.0]
         self._forces_n = (0.0, 0.0)
         self._effort_n = 0.0
         self._over_s = 0.0
         self._drive: _Drive | None = None
+        self._run_on: list[tuple[float, float]] = [(0.0, 0.0)] * 2  # speed [m/s], time left [s]
         self._reading = PerTick(self._now, lambda: clock.ticks)
 
     @property
     def moving(self) -> bool:
         """Whether a drive is under way."""
         return self._drive is not None
+
+    @property
+    def turning(self) -> bool:
+        """Whether a belt may turn: in a drive, or because its motor does not stop."""
+        return self.moving or any(left_s > 0.0 for _, left_s in self._run_on)
 
     def drive(self, left_m: float, right_m: float, speed_m_s: float) -> Action[TrackReading]:
         """Move the belts by these travels (executive.ports.Tracks), at most as fast as the motors can."""
@@ -67,16 +74,23 @@ class SimTracks:
             return ended(Outcome(Reason.DONE, value=self.read()))
         lasts_s = longest_m / min(speed_m_s, self._rover.speed_m_s)
         action: DeviceAction[TrackReading] = DeviceAction(self.stop)
-        self._drive = _Drive(left_m, right_m, left_m / lasts_s, right_m / lasts_s, action)
-        self._over_s = 0.0
+        self._drive = _Drive([left_m, right_m], (left_m / lasts_s, right_m / lasts_s), action)
+        self._over_s, self._run_on = 0.0, [(0.0, 0.0)] * 2
         return action
 
     def stop(self) -> None:
-        """Stop both belts at once."""
+        """Stop both belts at once, as far as their motors do."""
         if self._drive is not None:
-            drive, self._drive = self._drive, None
-            drive.action.end(Outcome(Reason.CANCELLED))
-            self._forces_n = (0.0, 0.0)
+            self._end_drive().end(Outcome(Reason.CANCELLED))
+
+    def _end_drive(self) -> DeviceAction[TrackReading]:
+        """Take the power off; what is left to do is to end the action."""
+        assert self._drive is not None  # noqa: S101
+        drive, self._drive = self._drive, None
+        self._forces_n = (0.0, 0.0)
+        speeds = (m.speed_factor * v for m, v in zip(self.motors, drive.speeds_m_s, strict=True))
+        self._run_on = [(v, m.runs_on_s) for m, v in zip(self.motors, speeds, strict=True)]
+        return drive.action
 
     def read(self) -> TrackReading:
         """Travels and currents, with quantisation and noise."""
@@ -84,29 +98,45 @@ class SimTracks:
 
     def turn(self, tick_s: float) -> tuple[float, float]:
         """Let the motors turn for one tick; the true travel of both belts in it [m]."""
-        if self._drive is None:
-            return 0.0, 0.0
-        d = self._drive
-        left_m = _toward(d.left_m, d.left_m_s * tick_s * self.speed_factors[0])
-        right_m = _toward(d.right_m, d.right_m_s * tick_s * self.speed_factors[1])
-        d.left_m, d.right_m = d.left_m - left_m, d.right_m - right_m
+        left_m, right_m = (self._shaft(side, tick_s) for side in (0, 1))
         self._turned_m[0] += left_m
         self._turned_m[1] += right_m
-        return left_m * self.gains[0], right_m * self.gains[1]
+        belts_m = left_m * self.gains[0], right_m * self.gains[1]
+        self.driven_m += abs(belts_m[0]) + abs(belts_m[1])
+        return belts_m
+
+    def _shaft(self, side: int, tick_s: float) -> float:
+        """How far a motor's shaft turns in a tick, as travel of its belt."""
+        if self._drive is not None:
+            d = self._drive
+            turned_m = self.motors[side].turn(d.speeds_m_s[side] * tick_s, d.remaining_m[side])
+            d.remaining_m[side] -= turned_m
+            return turned_m
+        speed_m_s, left_s = self._run_on[side]
+        turned_m = speed_m_s * min(tick_s, left_s)
+        self._run_on[side] = (speed_m_s, max(0.0, left_s - tick_s))
+        self.motors[side].astray_m += abs(turned_m)
+        return turned_m
 
     def feel(self, forces_n: tuple[float, float], tick_s: float) -> None:
         """Take in the belt forces of the tick; end the drive if it is done or blocked for too long."""
         if self._drive is None:
             return
-        self._forces_n = (abs(forces_n[0]), abs(forces_n[1]))
-        left_n = math.copysign(forces_n[0], forces_n[0] * self._drive.left_m_s)
-        right_n = math.copysign(forces_n[1], forces_n[1] * self._drive.right_m_s)
+        left_n, right_n = (self._pushes_n(side, forces_n[side]) for side in (0, 1))
+        self._forces_n = (abs(left_n), abs(right_n))
         self._effort_n = abs(left_n + right_n) / 2
         self._over_s = self._over_s + tick_s if self._overcurrent else max(0.0, self._over_s - tick_s)
         if self._over_s >= LIMIT_LASTS_S:
             self._finish(Reason.BLOCKED, "motor current over its limit")
-        elif abs(self._drive.left_m) < 1e-9 and abs(self._drive.right_m) < 1e-9:
+        elif all(abs(m) < 1e-9 for m in self._drive.remaining_m):
             self._finish(Reason.DONE)
+
+    def _pushes_n(self, side: int, force_n: float) -> float:
+        """What a motor pushes its belt with, positive the way it is driven."""
+        assert self._drive is not None  # noqa: S101
+        if self.motors[side].jammed and self._drive.remaining_m[side] != 0.0:
+            return STALL_PER_WEIGHT * self._weight_n
+        return math.copysign(force_n, force_n * self._drive.speeds_m_s[side])
 
     @property
     def _overcurrent(self) -> bool:
@@ -117,14 +147,11 @@ class SimTracks:
         )
 
     def _finish(self, reason: Reason, detail: str = "") -> None:
-        drive, self._drive = self._drive, None
-        if drive is not None:
-            last = replace(self._measure(IDLE_CURRENT_A), moving=False)
-            drive.action.end(Outcome(reason, detail, last))
-            self._forces_n = (0.0, 0.0)
+        last = replace(self._measure(IDLE_CURRENT_A), moving=False)
+        self._end_drive().end(Outcome(reason, detail, last))
 
     def _now(self) -> TrackReading:
-        return self._measure(IDLE_CURRENT_A if self.moving else 0.0)
+        return self._measure(IDLE_CURRENT_A if self.turning else 0.0)
 
     def _measure(self, idle: float) -> TrackReading:
         noise = self._rng.standard_normal(2) * CURRENT_SIGMA_A
@@ -133,11 +160,11 @@ class SimTracks:
             self._clock.now_s,
             left_m,
             right_m,
-            max(0.0, idle + CURRENT_PER_N * self._forces_n[0] + float(noise[0])),
-            max(0.0, idle + CURRENT_PER_N * self._forces_n[1] + float(noise[1])),
-            self.moving,
+            self._current_a(0, idle, float(noise[0])),
+            self._current_a(1, idle, float(noise[1])),
+            self.turning,
         )
 
-
-def _toward(remaining_m: float, step_m: float) -> float:
-    return remaining_m if abs(step_m) >= abs(remaining_m) - 1e-12 else step_m
+    def _current_a(self, side: int, idle_a: float, noise_a: float) -> float:
+        drawn_a = idle_a + CURRENT_PER_N * self._forces_n[side] if self.motors[side].powered else 0.0
+        return max(0.0, drawn_a + noise_a)

@@ -62,9 +62,13 @@ def displacement(
     load: Load,
     yaw_efficiency: float,
     gauge_m: float,
+    side_drift: float = 0.0,
 ) -> Displacement:
-    """What the rover does for these belt travels of its left and right track."""
+    """What the rover does for these belt travels of its left and right track.
+
+    `side_drift` is how far it slides to the left per travel, besides what the slope makes it.
+    """
     left_m, right_m = (g.travel(b, load) for g, b in zip(grounds, belts_m, strict=True))
     side_slip = (grounds[0].soil.side_slip + grounds[1].soil.side_slip) / 2
-    drift_m = side_slip * load.left_n / load.down_n * (abs(belts_m[0]) + abs(belts_m[1])) / 2
+    drift_m = (side_slip * load.left_n / load.down_n + side_drift) * (abs(belts_m[0]) + abs(belts_m[1])) / 2
     return Displacement((left_m + right_m) / 2, drift_m, yaw_efficiency * (right_m - left_m) / gauge_m)

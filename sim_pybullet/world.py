@@ -15,12 +15,14 @@ from executive.types import Array, Segment
 from sim_pybullet.bullet import pybullet
 from sim_pybullet.cabin import SimCabin
 from sim_pybullet.config import WorldConfig
-from sim_pybullet.ground_body import add_rock, add_terrain
+from sim_pybullet.ground_body import add_terrain
 from sim_pybullet.head import SimHead
 from sim_pybullet.inclinometer import SimInclinometer
 from sim_pybullet.poses import CabinChain, cabin_chain
+from sim_pybullet.rock_pile import RockPile
 from sim_pybullet.rover import Grip, PlaneRate, RoverBody
-from sim_pybullet.scene import Rock, SceneState
+from sim_pybullet.scene import SceneState
+from sim_pybullet.seeing import CLEAR
 from sim_pybullet.shape import TETHER_ANCHOR_BODY_M, belt
 from sim_pybullet.site import make_rocks, make_soils, make_terrain, start_pose
 from sim_pybullet.soil import traction_limit
@@ -59,15 +61,15 @@ class World:
         self._truth, self._never_sleep = truth, never_sleep
         self.terrain = make_terrain(config.terrain, route, seed)
         self.soils = make_soils(config, seed)
-        self.rocks = list(make_rocks(config, self.terrain, route, rig, seed))
+        rocks = make_rocks(config, self.terrain, route, rig, seed)
         self.led_alive, self.led_factor = [True] * 4, [1.0] * 4
-        self.extra_slip = 0.0
+        self.seeing = CLEAR
+        self.extra_slip, self.side_drift = 0.0, 0.0  # shares of all travel, besides what the ground takes
         self.steps = 0
         self._client = _connect(config.gravity)
         area = area_of(route, PHYSICS_MARGIN_M)
         add_terrain(self._client, self.terrain.crop(area.low_site_m, area.high_site_m))
-        for rock in self.rocks:
-            add_rock(self._client, rock)
+        self.rocks = RockPile(self._client, rocks)
         self.body = RoverBody(self._client, rig, *start_pose(config, self.terrain, route, rig, seed))
         mass_kg = rig.rover.rover_mass_kg + rig.rover.payload_mass_kg
         self.weight_n = mass_kg * config.gravity
@@ -91,7 +93,7 @@ class World:
         self.tether = SimTether(
             (0.0, 0.0, SPOOL_HEIGHT_M),
             rig.rover.tether_length_m,
-            self._anchor(),
+            self.anchor(),
             clock,
             generator(seed, "tether"),
         )
@@ -101,16 +103,10 @@ class World:
         """Let the physics run until everything is at rest again."""
         self._asleep, self._calm_steps, self._restless_steps = False, 0, 0
 
-    def add_rock(self, rock: Rock) -> None:
-        """Put one more rock into the world."""
-        self.rocks.append(rock)
-        add_rock(self._client, rock)
-        self.wake()
-
     def advance(self) -> None:
         """Let one tick pass: motors, physics, clock, and what that ends."""
         tick_s = self.clock.tick_s
-        moving = self.tracks.moving or self.cabin.moving
+        moving = self.tracks.turning or self.cabin.moving
         awake = moving or not self._asleep
         if awake and self.clock.now_s > self._last_truth_s:
             self._write_truth(force=True)  # the last moment at rest, so that nobody interpolates across it
@@ -123,7 +119,7 @@ class World:
         self.tracks.feel(forces_n, tick_s)
         self.cabin.settle()
         self.head.settle()
-        if not (self.tracks.moving or self.cabin.moving or self._asleep or self._never_sleep):
+        if not (self.tracks.turning or self.cabin.moving or self._asleep or self._never_sleep):
             self._settle_down()  # what sways after a stop is the time scale's inertia, not the rover's
         self._write_truth(force=awake)
 
@@ -137,7 +133,7 @@ class World:
         count = max(1, round(tick_s / scale / STEP_S))
         rate = _plane_rate(moved, self.body.pose()[1], count * STEP_S)
         self.body.hold_cabin(*self.cabin.targets_rad)
-        self._pull = self.tether.pull(self._anchor())
+        self._pull = self.tether.pull(self.anchor())
         for _ in range(count):
             self._step(rate)
         return self.body.traction()
@@ -154,7 +150,8 @@ class World:
             1.0 - g.travel(b, load) / b if b != 0.0 else 0.0
             for g, b in zip((left, right), belts_m, strict=True)
         )
-        return displacement(belts_m, (left, right), load, efficiency, self.rig.rover.track_gauge_m)
+        gauge_m = self.rig.rover.track_gauge_m
+        return displacement(belts_m, (left, right), load, efficiency, gauge_m, self.side_drift)
 
     def _gripping(self, grounds: tuple[TrackGround, TrackGround]) -> Grip:
         """What the tracks can push with under the load that they bear now; less where the belly bears some.
@@ -174,13 +171,14 @@ class World:
     def _ground(self, at_site_m: Array) -> TrackGround:
         x, y = float(at_site_m[0]), float(at_site_m[1])
         soil = self.soils.at(x, y)
-        return TrackGround(soil, self.soils.slip_scatter(soil, x, y) + self.extra_slip, self._contact_m)
+        lost = self.soils.slip_scatter(soil, x, y) + self.extra_slip + soil.sinkage
+        return TrackGround(soil, min(lost, 1.0), self._contact_m)
 
     def _step(self, rate: PlaneRate) -> None:
         self.body.command(rate, self._grip, STEP_S)
         if self._pull.any():
             x, y, z = self._pull
-            self.body.push((float(x), float(y), float(z)), self._anchor())
+            self.body.push((float(x), float(y), float(z)), self.anchor())
         pybullet.stepSimulation(physicsClientId=self._client)
         self.steps += 1
         self._doze()
@@ -198,7 +196,8 @@ class World:
         while not self._asleep:
             self._step(STILL)
 
-    def _anchor(self) -> Array:
+    def anchor(self) -> Array:
+        """Where the tether is tied to the rover, in `site`."""
         position, rotation = self.body.pose()
         anchor: Array = position + rotation @ np.array(TETHER_ANCHOR_BODY_M)
         return anchor
@@ -225,6 +224,7 @@ class World:
             rocks=tuple(self.rocks),
             led_alive=(a, b, c, d),
             led_factor=(fa, fb, fc, fd),
+            seeing=self.seeing,
         )
 
     def _write_truth(self, force: bool) -> None:
@@ -249,7 +249,7 @@ class World:
                 self._slips[1],
                 self.tether.length_m,
                 self.tether.tension_n,
-                self.tracks.moving,
+                self.tracks.turning,
             )
         )
 

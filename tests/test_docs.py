@@ -8,23 +8,35 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
 
 
-def test_every_shipped_tree_is_drawn_as_it_is() -> None:
-    """After changing a tree: python docs/draw_trees.py, and look at the drawing."""
-    spec = importlib.util.spec_from_file_location("draw_trees", ROOT / "docs" / "draw_trees.py")
+def script(name: str) -> Any:
+    """A script of the documentation as a module."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    drawings = module.drawings()
+    return module
+
+
+def test_every_shipped_tree_is_drawn_as_it_is() -> None:
+    """After changing a tree: python docs/draw_trees.py, and look at the drawing."""
+    drawings = script("draw_trees").drawings()
     assert {path.name for path in drawings} == {path.name for path in (ROOT / "docs" / "trees").glob("*.svg")}
     for path, svg in drawings.items():
         assert path.read_text() == svg, f"{path.name} is out of date"
+
+
+def test_the_catalogue_of_faults_is_that_of_the_faults_as_declared() -> None:
+    """After changing a fault: python docs/list_faults.py."""
+    catalogue = script("list_faults")
+    assert catalogue.PAGE.read_text() == catalogue.page(), "faults.md is out of date"
 
 
 def test_tree_page_shows_every_drawing() -> None:

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from executive.config.expect import Expect, Name
 from executive.config.validate import Strict
 from executive.types import Point, Segment
-from executive.units import Angle, Duration, Length
+from executive.units import Duration, Length
 
-Name = Annotated[str, Field(min_length=1, max_length=100)]
 Margin = Annotated[Length, Field(gt=0)]
 
 
@@ -62,46 +62,11 @@ class MissionFile(Strict):
         )
 
 
-class Below(Strict):
-    below: Length
-
-
-class BelowAngle(Strict):
-    below: Angle
-
-
-class AtLeast(Strict):
-    at_least: Annotated[int, Field(ge=0)]
-
-
-class Diagnosed(Strict):
-    """The named fault must be recognised `as` a hypothesis within this time of its onset."""
-
-    fault: Name
-    as_: Annotated[Name, Field(alias="as")]
-    within: Duration | None = None
-
-
-OutcomeName = Literal["reached", "safe_hold", "help", "time_limit"]
-
-
-class Expect(Strict):
-    """What the run must come to; what is not said is not judged."""
-
-    outcome: OutcomeName | None = None
-    final_error: Below | None = None
-    driven_beyond_off_track: Below | None = None
-    max_tilt: BelowAngle | None = None
-    waypoints_reached: AtLeast | None = None
-    diagnosed: Diagnosed | None = None
-    strategies_tried: tuple[Name, ...] = ()
-    strategies_not_tried: tuple[Name, ...] = ()
-    always: Name | None = None
-    eventually: Name | None = None
-
-
 class ScenarioFile(Strict):
-    """A mission, a world, a seed, faults, expectations. `world`, `rig` and `faults` are read further on."""
+    """A mission, a world, a seed, faults, expectations. `world`, `rig` and `faults` are read further on.
+
+    `expected_to_fail` says why the expectations do not hold yet; the run's safety must, all the same.
+    """
 
     scenario: Name
     doc: str = ""
@@ -114,4 +79,5 @@ class ScenarioFile(Strict):
     rig: dict[str, Any] = Field(default_factory=dict)
     faults: tuple[dict[str, Any], ...] = ()
     expect: Expect = Expect()
+    expected_to_fail: Annotated[str, Field(min_length=1, max_length=500)] | None = None
     time_limit: Annotated[Duration, Field(gt=0)] = 24 * 3600.0

@@ -17,7 +17,7 @@ def override(source: Source, text: str, number: int, option: str = "--set") -> S
         raise ConfigError([problem])
     column = len(key) + 2 if option == "--set" else 1
     read = _shifted(_value(value, option, number, column), option, number, column)
-    place = _place(key)
+    place = dotted(key)
     try:
         changed = source.graft(place, read)
     except (TypeError, IndexError):
@@ -33,7 +33,8 @@ def override(source: Source, text: str, number: int, option: str = "--set") -> S
     )
 
 
-def _place(key: str) -> Place:
+def dotted(key: str) -> Place:
+    """The place that a dotted key names; whole numbers are indices."""
     return tuple(int(step) if step.isdecimal() else step for step in key.split("."))
 
 

@@ -22,6 +22,7 @@ SUFFIXES = {
     "_rad": units.ANGLE,
     "_kg": units.MASS,
     "_m": units.LENGTH,
+    "_n": units.FORCE,
 }
 
 

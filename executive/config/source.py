@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -79,7 +80,8 @@ class Source:
             self.get(place),
             {p[cut:]: mark for p, mark in self.values.items() if _within(p, place)},
             {p[cut:]: mark for p, mark in self.keys.items() if _within(p, place)},
-            {p[cut:]: folder for p, folder in self.folders.items() if _within(p, place)},
+            {(): self.folder(place)}
+            | {p[cut:]: folder for p, folder in self.folders.items() if _within(p, place)},
         )
 
     def graft(self, place: Place, other: Source) -> Source:
@@ -95,12 +97,30 @@ class Source:
             problems=self.problems + other.problems,
         )
 
+    def only_member(self, place: Place) -> Source:
+        """This source with the value at `place` as the only member of a list; it keeps its marks."""
+        member = self.part(place)
+        return self.graft(
+            place,
+            Source(
+                [member.data],
+                {(): self.at(place)} | {(0, *p): mark for p, mark in member.values.items()},
+                {(0, *p): mark for p, mark in member.keys.items() if p},
+                {(0, *p): folder for p, folder in member.folders.items()},
+            ),
+        )
+
 
 def read(path: Path, shown: str | None = None) -> Source:
     """Read a file; ConfigError when it cannot be read as one YAML document at all."""
     name = shown if shown is not None else str(path)
-    source = read_text(_text(path, Mark(name, 1, 1)), name)
-    return replace(source, folders={(): path.parent})
+    return replace(_parsed(_text(path, Mark(name, 1, 1)), name), folders={(): path.parent})
+
+
+@lru_cache(256)
+def _parsed(text: str, name: str) -> Source:
+    """Trees are read again and again in a process; what is read is never altered in place."""
+    return read_text(text, name)
 
 
 def read_text(text: str, name: str) -> Source:

@@ -146,7 +146,8 @@ def _plain(message: str) -> str:
 
 
 def _options(expected: str) -> list[str]:
-    return [word.strip(" '") for word in expected.replace(" or ", ",").split(",") if word.strip(" '")]
+    words = [word.strip(" '") for word in expected.replace(" or ", ",").split(",")]
+    return [{"True": "true", "False": "false"}.get(word, word) for word in words if word]
 
 
 def _known_place(source: Source, at: Place, loc: Place) -> tuple[Place, Place]:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from executive.guidance import Belts
 from executive.nodes.action import ActionLeaf
 from executive.nodes.base import FromTree, In, InOut
+from executive.nodes.belt_watch import BeltWatch
 from executive.ports import Action
 from executive.types import Outcome, PoseEstimate, Reason, Segment, TrackReading
 from executive.values import ANGLE, NUMBER, POSE, SEGMENT
@@ -22,7 +23,10 @@ DRIVING_OUTCOMES: tuple[Reason, ...] = (
 
 
 class DrivingLeaf(ActionLeaf):
-    """Drives the belts; stops on tilt and before the off-track margin; leaves the predicted pose behind."""
+    """Drives the belts; stops on tilt, before the off-track margin, and when a belt does not count.
+
+    Leaves the predicted pose behind.
+    """
 
     pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
@@ -39,12 +43,17 @@ class DrivingLeaf(ActionLeaf):
         planned = self.belts()
         if not planned.ok or planned.value is None:
             return planned
-        speed = self.services.rig.rover.speed_m_s
-        return self.services.devices.tracks.drive(planned.value.left_m, planned.value.right_m, speed)
+        speed, tracks = self.services.rig.rover.speed_m_s, self.services.devices.tracks
+        self._belts = BeltWatch(planned.value, speed, tracks.read())
+        return tracks.drive(planned.value.left_m, planned.value.right_m, speed)
 
     def watch(self) -> Outcome[object] | None:
         pose = self._carry_on()
         telemetry = self.services.classification.telemetry
+        if telemetry is not None and (problem := self._belts.problem(telemetry.tracks)):
+            outcome: Outcome[object] = Outcome(Reason.DEVICE, problem)
+            self.services.journal.assessment(self.services.classification.failed(outcome))
+            return outcome
         tilt = telemetry.tilt if telemetry else None
         if tilt is not None and math.hypot(tilt.roll_rad, tilt.pitch_rad) > self.tilt_limit:
             return Outcome(Reason.TILT, f"{math.degrees(math.hypot(tilt.roll_rad, tilt.pitch_rad)):.1f} deg")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from executive.nodes.action import ActionLeaf
 from executive.nodes.base import FromTree, In, InOut
 from executive.ports import Action, LocaliseRequest
+from executive.prediction import unusable
 from executive.types import Outcome, PoseEstimate, Quality, Reason, Segment
 from executive.values import DURATION, POSE, QUALITY, SEGMENT
 
@@ -38,6 +39,7 @@ class Localise(ActionLeaf):
         if self.services.clock.ticks < self._start_tick:
             return None
         if self._action is None:
+            self._start_s = self.services.clock.now_s
             self._action = self.request()
         return super().step()
 
@@ -48,18 +50,23 @@ class Localise(ActionLeaf):
     def finish(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
         classification = self.services.classification
         self.services.journal.views(self.services.localizer.views(), outcome)
+        outcome = self.held_against_what_can_be(outcome)
         if not outcome.ok or outcome.value is None:
             self.services.journal.assessment(classification.failed(outcome))
             return outcome
-        if (impossible := classification.beyond_reach(outcome.value)) is not None:
-            refused: Outcome[PoseEstimate] = Outcome(Reason.IMPLAUSIBLE, impossible)
-            self.services.journal.assessment(classification.failed(refused))
-            return refused
         fix = outcome.value.on(self.segment)
         self.services.journal.assessment(classification.fixed(fix))
         self.services.journal.estimate(fix)
         self.pose = fix
         return Outcome(Reason.DONE, "; ".join(filter(None, (_summary(fix), outcome.detail))), fix)
+
+    def held_against_what_can_be(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
+        """The outcome; IMPLAUSIBLE in place of a pose that is no number, old, or out of the belts' reach."""
+        if not outcome.ok or outcome.value is None:
+            return outcome
+        why = unusable(outcome.value, self._start_s)
+        why = why or self.services.classification.beyond_reach(outcome.value)
+        return Outcome(Reason.IMPLAUSIBLE, why) if why else outcome
 
 
 def _summary(fix: PoseEstimate) -> str:

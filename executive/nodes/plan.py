@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from executive import prediction
+from executive import guidance, prediction
 from executive.nodes.base import FromTree, In, InOut, Leaf, Out
 from executive.types import Outcome, Point, PoseEstimate, Reason, Segment
 from executive.values import ANGLE, LENGTH, POINT, POSE, ROUTE, SEGMENT, TEXT
@@ -40,12 +40,17 @@ class StartHere(Leaf):
 
 
 class WaypointReached(Leaf):
-    """Report the end of `segment` as reached."""
+    """Report the end of `segment` as reached, if the rover believes to be in its tolerance zone."""
 
     segment = In[Segment](SEGMENT, "the segment that ends here")
     pose = In[PoseEstimate](POSE, "the pose")
 
+    outcomes = (Reason.DONE, Reason.UNEXPECTED)
+
     def step(self) -> Outcome[object]:
+        away = guidance.distance_m(self.pose, self.segment.end)
+        if not away <= self.segment.tolerance_m:
+            return Outcome(Reason.UNEXPECTED, f"{away * 1e3:.0f} mm from a way-point said to be reached")
         self.services.journal.waypoint(self.segment.index + 1, self.pose)
         return Outcome(Reason.DONE)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from executive.nodes.base import In, Leaf
 from executive.ports import Action, LocaliseRequest
+from executive.prediction import unusable
 from executive.types import Outcome, PoseEstimate, Quality, Reason
 from executive.values import LENGTH, NUMBER
 
@@ -35,13 +36,14 @@ class WatchMotion(Leaf):
         self._predictions[predicted.time_s] = predicted
         if self._action is None:
             request = LocaliseRequest(Quality.TREND, predicted, budget_s=120.0)
-            self._action = self.services.localizer.locate(request)
+            self._action, self._asked_s = self.services.localizer.locate(request), predicted.time_s
             return None
         outcome = self._action.poll()
         if outcome is None:
             return None
         self._action = None
-        return None if not outcome.ok or outcome.value is None else self._judge(outcome.value)
+        seen = outcome.value
+        return None if not outcome.ok or seen is None or unusable(seen, self._asked_s) else self._judge(seen)
 
     def halt(self) -> None:
         if self._action is not None:

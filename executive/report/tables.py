@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from executive.report.figure import duration, millimetres
 from executive.report.gather import Run
 from executive.report.overview import letter
+from executive.rows import worst_first
 from executive.telemetry.events import WaypointEvent
 from executive.telemetry.result import waypoint_error_m
 from executive.types import Call
@@ -27,8 +30,8 @@ class Table:
 
 def tables(run: Run) -> list[Table]:
     """Every table that has rows."""
-    made = [waypoints(run), strategies(run), faults(run), expectations(run), calls(run), localisations(run)]
-    return [table for table in made if table.rows]
+    kinds = (waypoints, strategies, faults, expectations, safety, calls, localisations)
+    return [table for kind in kinds if (table := kind(run)).rows]
 
 
 def waypoints(run: Run) -> Table:
@@ -93,14 +96,28 @@ def faults(run: Run) -> Table:
 
 
 def expectations(run: Run) -> Table:
-    rows = tuple(
-        (row["text"], "met" if row["met"] else "NOT MET", _plain(row.get("robustness")))
-        for row in run.result.get("expectations", [])
+    rows = tuple(_judged(row) for row in worst_first(run.result.get("expectations", [])))
+    note = (
+        "Robustness is the distance to the limit, negative where it is not met; flags and yes-or-no "
+        "expectations have none. An expectation is violated from when it was certain to fail. "
+        "What is not met comes first, the earliest first."
     )
-    note = "Robustness is the distance to the limit, in its unit; negative where it is not met."
-    return Table(
-        "expectations", "Expectations", ("expectation", "", "robustness"), rows, note if rows else ""
-    )
+    return Table("expectations", "Expectations", ("expectation", *_JUDGED), rows, note if rows else "")
+
+
+def safety(run: Run) -> Table:
+    rows = tuple(_judged(row) for row in run.result.get("safety", []))
+    note = "These must hold of every run, whatever fails and whatever its scenario expects."
+    return Table("safety", "Safety", ("whatever happens", *_JUDGED), rows, note if rows else "")
+
+
+_JUDGED = ("", "robustness", "violated from", "warning")
+
+
+def _judged(row: Mapping[str, Any]) -> tuple[str, ...]:
+    verdict = {True: "met", False: "NOT MET", None: "not known"}[row["met"]]
+    margin = f"{_plain(row.get('robustness'))} {row.get('unit') or ''}".rstrip()
+    return row["text"], verdict, margin, _time(row.get("t_violation_s")), row.get("warning") or ""
 
 
 def calls(run: Run) -> Table:

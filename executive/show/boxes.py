@@ -24,13 +24,22 @@ SYMBOLS = {
 MAX_LINE, MAX_GUARD = 44, 72
 
 
+@dataclass(frozen=True)
+class Tag:
+    """A word in a small frame at the foot of a box, painted as `outcome` says; faint where it is None."""
+
+    word: str
+    outcome: str | None
+    tip: str = ""
+
+
 @dataclass
 class Box:
     """One node to draw. Sizes and places are filled in by the layout [px].
 
     `category` is control, decorator, recover, leaf or tree; `alternative` marks a strategy that the pool may
     choose; `frame` is the name of the tree whose nodes this box and those under it are; `outcome` is how the
-    node ended, where known.
+    node ended, where known; `tags` stand at its foot.
     """
 
     path: str
@@ -43,6 +52,7 @@ class Box:
     alternative: bool = False
     frame: str | None = None
     outcome: str | None = None
+    tags: tuple[Tag, ...] = ()
     x: float = 0.0
     y: float = 0.0
     width: float = 0.0

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from executive.nodes.base import REQUIRED, FromTree, PortSpec
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.spec import Literal, NodeSpec, TreeSpec
+from executive.units import written
 
 NAMES = {
     "sequence": "Sequence",
@@ -32,7 +33,8 @@ def groot(tree: TreeSpec, strategies: Mapping[str, TreeSpec] | None = None) -> s
     root = ET.Element("root", {"BTCPP_format": "4", "main_tree_to_execute": tree.name})
     trees = {t.name: t for top in (tree, *(strategies or {}).values()) for t in _trees(top)}
     for one in trees.values():
-        ET.SubElement(root, "BehaviorTree", {"ID": one.name}).append(_node(one.root))
+        about = {"_description": one.doc} if one.doc else {}
+        ET.SubElement(root, "BehaviorTree", {"ID": one.name, **about}).append(_node(one.root))
     model = ET.SubElement(root, "TreeNodesModel")
     for kind in _own_kinds(trees.values()):
         model.append(_model(kind))
@@ -109,6 +111,15 @@ def _model(kind: NodeType) -> ET.Element:
     return _ports(ET.Element(tag, {"ID": kind.name}), kind.ports)
 
 
+def _default_text(port: PortSpec) -> str:
+    """A default as a tree file would give it: dimensioned numbers with their unit."""
+    if isinstance(port.default, bool):
+        return str(port.default).lower()
+    if port.type.unit is not None and isinstance(port.default, float):
+        return written(port.default, port.type.unit)
+    return str(port.default)
+
+
 def _ports(element: ET.Element, ports: tuple[PortSpec, ...]) -> ET.Element:
     tags = {"in": "input_port", "out": "output_port", "inout": "inout_port"}
     for port in ports:
@@ -116,6 +127,6 @@ def _ports(element: ET.Element, ports: tuple[PortSpec, ...]) -> ET.Element:
         if isinstance(port.default, FromTree):
             attributes["default"] = f"{{{port.default.name}}}"
         elif port.default is not REQUIRED and port.default is not None:
-            attributes["default"] = str(port.default)
+            attributes["default"] = _default_text(port)
         ET.SubElement(element, tags[port.direction.value], attributes).text = port.help
     return element

@@ -5,7 +5,9 @@ Reading order is top to bottom, nothing overlaps, and long chains of decorators 
 
 from __future__ import annotations
 
-from executive.show.boxes import Box
+from collections.abc import Iterator
+
+from executive.show.boxes import Box, Tag
 
 TITLE_PX, LINE_PX = 13.0, 10.5
 TITLE_WIDTH, LINE_WIDTH = 0.67, 0.60
@@ -13,6 +15,7 @@ TITLE_WIDTH, LINE_WIDTH = 0.67, 0.60
 PAD_PX, ROW_PX, HEAD_PX = 10.0, 14.0, 28.0
 INDENT_PX, BELOW_PX, COLUMN_PX, GAP_PX = 26.0, 12.0, 44.0, 12.0
 FRAME_PX = 12.0
+TAG_ROW_PX, TAG_GAP_PX, TAGS_WIDTH_PX = 17.0, 5.0, 300.0
 MARGIN_PX = 16.0
 
 
@@ -59,4 +62,19 @@ def _size(box: Box) -> tuple[float, float]:
     lines = [len(line) * LINE_PX * LINE_WIDTH for line in (*box.lines, *box.guards)]
     width = max([title, *lines, 70.0]) + 2 * PAD_PX
     rows = len(box.lines) + len(box.guards)
-    return width, HEAD_PX + (rows * ROW_PX + 5.0 if rows else 0.0)
+    height = HEAD_PX + (rows * ROW_PX + 5.0 if rows else 0.0)
+    tags = list(tag_places(box))
+    if not tags:
+        return width, height
+    return max(width, *(x + w + PAD_PX for x, _, w, _ in tags)), height + tags[-1][1] + TAG_ROW_PX + 3.0
+
+
+def tag_places(box: Box) -> Iterator[tuple[float, float, float, Tag]]:
+    """Place and width of each tag [px], from the box's left edge and from under its lines; rows wrap."""
+    x, y = PAD_PX, 0.0
+    for tag in box.tags:
+        width = len(tag.word) * LINE_PX * LINE_WIDTH + 10.0
+        if x > PAD_PX and x + width > TAGS_WIDTH_PX:
+            x, y = PAD_PX, y + TAG_ROW_PX
+        yield x, y, width, tag
+        x += width + TAG_GAP_PX

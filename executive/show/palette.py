@@ -26,6 +26,11 @@ OUTCOMES = {
     "failure": Paint("#fbe2df", "#c0392b", "#7d1f15"),
     "running": Paint("#e0edfb", "#2471c8", "#124680"),
 }
+COVERAGE = {
+    "covered": OUTCOMES["success"],
+    "partly covered": Paint("#fdf3dc", "#c9962f", "#6f4e0c"),
+    "not covered": OUTCOMES["failure"],
+}
 UNVISITED = Paint("#f7f8f8", "#c5cbd0", "#8a939b")
 EDGE, FAINT, PORT, GUARD = "#8d979f", "#d3d8dc", "#515b64", "#8a5a00"
 FRAME_FILL, FRAME_ALTERNATIVE = "#f6f8fa", "#fffaf3"
@@ -34,5 +39,5 @@ FRAME_FILL, FRAME_ALTERNATIVE = "#f6f8fa", "#fffaf3"
 def paint(category: str, outcome: str | None, coloured: bool) -> Paint:
     """How to paint a node: by its outcome where the drawing shows a run, else by its kind."""
     if outcome is not None:
-        return OUTCOMES.get(outcome, UNVISITED)
+        return (OUTCOMES | COVERAGE).get(outcome, UNVISITED)
     return UNVISITED if coloured else KINDS.get(category, KINDS["leaf"])

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from xml.sax.saxutils import escape, quoteattr
 
 from executive.show.boxes import Box
-from executive.show.layout import FRAME_PX, HEAD_PX, LINE_PX, PAD_PX, ROW_PX, TITLE_PX, lay_out
+from executive.show.layout import FRAME_PX, HEAD_PX, LINE_PX, PAD_PX, ROW_PX, TITLE_PX, lay_out, tag_places
 from executive.show.palette import EDGE, FRAME_ALTERNATIVE, FRAME_FILL, GUARD, PORT, paint
 
 FONT = "Inter, 'Segoe UI', Roboto, 'Helvetica Neue', 'DejaVu Sans', Arial, sans-serif"
@@ -88,7 +88,20 @@ def _box(box: Box, coloured: bool) -> Iterator[str]:
     ):
         yield _text(box.x + PAD_PX, y, LINE_PX, colour, line, style)
         y += ROW_PX
+    yield from _tags(box, y - 7 if box.lines or box.guards else box.y + HEAD_PX)
     yield "</g>"
+
+
+def _tags(box: Box, top: float) -> Iterator[str]:
+    for dx, dy, width, tag in tag_places(box):
+        colours = paint(box.category, tag.outcome, coloured=True)
+        dash = "" if tag.outcome else ' stroke-dasharray="3 2"'
+        x, y = box.x + dx, top + dy
+        yield (
+            f'<g><title>{escape(tag.tip)}</title><rect x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" '
+            f'height="14" rx="7" fill="{colours.fill}" stroke="{colours.stroke}"{dash}/>'
+        )
+        yield _text(x + 5, y + 10.5, LINE_PX, colours.text, tag.word, "") + "</g>"
 
 
 def _text(x: float, y: float, size: float, colour: str, text: str, style: str) -> str:

@@ -38,7 +38,7 @@ class Stop:
 
 @dataclass(frozen=True)
 class NodeChange:
-    """A node's status changed. `reason` and `detail` say why a leaf ended, empty otherwise."""
+    """A node's status changed. `reason` and `detail` say why a leaf or a guard ended it, empty otherwise."""
 
     path: str
     status: str

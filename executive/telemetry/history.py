@@ -40,6 +40,14 @@ class History:
         """The history of a run that left nothing."""
         return cls({}, complete=False)
 
+    @classmethod
+    def holding(cls, events: list[At[T]]) -> History:
+        """A history of these events of one type, and nothing else."""
+        made = cls({})
+        if events:
+            made._decoded[type(events[0].event)] = list(events)
+        return made
+
     def all(self, event: type[T]) -> list[At[T]]:
         """Every event of a type, in order of time."""
         if event not in self._decoded:

@@ -55,14 +55,18 @@ def summarise(record: Path, truth: Path | None, figures: RunFigures | None = Non
 
     RecordError if there is no record.
     """
-    figures = figures or RunFigures()
     history = History.of(record)
     world = History.of(truth) if truth is not None and truth.is_file() else History.empty()
+    return summary_of(history, world, digest(record), figures or RunFigures())
+
+
+def summary_of(history: History, world: History, content: str, figures: RunFigures) -> dict[str, object]:
+    """The same from what was read already; `content` is the digest of the record."""
     track = Track.of(world)
     faults = fault_rows(history, world)
     summary = {
         "schema": SCHEMA,
-        **_identity(history, digest(record)),
+        **_identity(history, content),
         "wall_s": figures.wall_s,
         "wall": dict(figures.wall),
         "waypoints": _waypoints(history, figures.waypoints_total),
@@ -114,7 +118,7 @@ def _truth(history: History, track: Track) -> dict[str, object]:
         "final_error_m": _final_error_m(history, track),
         "waypoint_errors_m": [waypoint_error_m(track, at) for at in history.all(WaypointEvent)],
         "max_cross_track_m": float(known.max()) if known.size else None,
-        "driven_beyond_off_track_m": driven_beyond_m(track, cross),
+        "driven_beyond_off_track_m": float(driven_beyond_m(track, cross)[-1]),
         "max_tilt_deg": math.degrees(track.tilt_rad().max()),
         "path_m": float(track.steps_m().sum()),
         "tether_max_n": float(track.tether_n.max()),

@@ -90,14 +90,14 @@ def _columns(segment: Segment, position_m: Array) -> Array:
     return np.array([-sine * dx + cosine * dy, segment.on_track_m * ones, segment.off_track_m * ones])
 
 
-def driven_beyond_m(track: Track, cross: CrossTrack) -> float:
-    """True way driven while the true cross-track error exceeds the off-track margin [m].
+def driven_beyond_m(track: Track, cross: CrossTrack) -> Array:
+    """True way driven so far while the true cross-track error exceeds the off-track margin [m], shape (n,).
 
     A step counts by where it ends; one that starts or ends without a segment does not count.
     """
     beyond: NDArray[np.bool_] = np.abs(cross.cross_m) > cross.off_track_m  # False where NaN
-    commanded = np.isfinite(cross.cross_m[:-1])
-    return float(track.steps_m()[beyond[1:] & commanded].sum())
+    counted = beyond[1:] & np.isfinite(cross.cross_m[:-1])
+    return np.concatenate([[0.0], np.cumsum(np.where(counted, track.steps_m(), 0.0))])
 
 
 @dataclass(frozen=True, eq=False)

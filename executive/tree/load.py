@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ from executive.config.find import find, names, shown
 from executive.config.source import Mark, Place, Source, read, read_text
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
-from executive.errors import ConfigError
+from executive.errors import ConfigError, Problem
 from executive.expressions import GuardError
 from executive.guards import parse_guard
 from executive.nodes import LEAVES
@@ -22,15 +23,24 @@ from executive.tree.literals import port_value
 from executive.tree.spec import GUARDS, Literal, NodeSpec, PortValue, Reference, TreeSpec
 
 MAX_SIZE = 5000
+Instead = Mapping[Path, str]
+"""Texts that stand for tree files: what if a file said something else?"""
+AS_IT_IS: Instead = {}
 BESIDE = ("name", *GUARDS)
 CHILD_KEYS = {"none": (), "one": ("child",), "two": ("children",), "many": ("children",)}
 
 
-def load_tree(reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
-    """Load by path or bare name; ConfigError with every problem in the file and the trees it uses."""
+def load_tree(
+    reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES, instead: Instead = AS_IT_IS
+) -> TreeSpec:
+    """Load by path or bare name; ConfigError with every problem in the file and the trees it uses.
+
+    A file among `instead` (by its absolute path) is taken to hold the text given there.
+    """
     if isinstance(reference, str):
         reference = find("trees", reference, Path.cwd(), Mark(reference, 1, 1))
-    return _Trees(node_types(leaves)).load(reference.absolute(), ())
+    given = {str(path): _in_place_of(path, text) for path, text in instead.items()}
+    return _Trees(node_types(leaves), given).load(reference.absolute(), ())
 
 
 def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
@@ -38,17 +48,31 @@ def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf
     return _Trees(node_types(leaves)).read(read_text(text, name), ())
 
 
-class _Trees:
-    """One loading: every file is read once, however often it is used."""
+def check_trees(sources: Mapping[str, Source], skipped: Container[str] = ()) -> list[Problem]:
+    """Every problem of trees given by name, as if they were files that can use each other."""
+    trees, problems = _Trees(node_types(), sources), Problems()
+    for name in sources:
+        if name not in skipped:
+            problems.attempt(lambda n=name: trees.load(Path(n), ()))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+    return sorted(set(problems.found))
 
-    def __init__(self, types: Mapping[str, NodeType]) -> None:
-        self.types = types
+
+def _in_place_of(path: Path, text: str) -> Source:
+    return replace(read_text(text, shown(path)), folders={(): path.parent})
+
+
+class _Trees:
+    """One loading: every file is read once, however often it is used. `given` trees need no file."""
+
+    def __init__(self, types: Mapping[str, NodeType], given: Mapping[str, Source] | None = None) -> None:
+        self.types, self.given = types, given or {}
         self.loaded: dict[Path, TreeSpec | ConfigError] = {}
 
     def load(self, path: Path, stack: tuple[Path, ...]) -> TreeSpec:
         if path not in self.loaded:
             try:
-                self.loaded[path] = self.read(read(path, shown(path)), (*stack, path))
+                source = self.given.get(str(path)) or read(path, shown(path))
+                self.loaded[path] = self.read(source, (*stack, path))
             except ConfigError as error:
                 self.loaded[path] = error
         result = self.loaded[path]
@@ -182,7 +206,8 @@ class _TreeReader:
 
     def _tree(self, word: str, mark: Mark) -> TreeSpec:
         try:
-            path = find("trees", word, self.source.folder(), mark)
+            given = word in self.trees.given
+            path = Path(word) if given else find("trees", word, self.source.folder(), mark)
         except ConfigError:
             known = [*self.trees.types, *names("trees")]
             message = f'got the unknown node "{word}", expected a node or a tree{guess(word, known)}'

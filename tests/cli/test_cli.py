@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from executive.cli import NOT_YET, cli, invoke
+from executive.cli import cli, invoke
 
 GOOD = "tree: go\ndoc: Wait.\nroot: {wait: {duration: 5 s}}\n"
 BAD = "tree: go\nroot:\n  sequence:\n    - wiat: {}\n    - wait: {duration: 5}\n"
@@ -81,12 +81,6 @@ def test_schemas_are_json_schema(kind, capsys):
     made = json.loads(capsys.readouterr().out)
     assert made["$schema"].startswith("https://json-schema.org/")
     assert kind in made["required"]
-
-
-@pytest.mark.parametrize("name", NOT_YET)
-def test_what_is_not_there_yet_says_so(name, capsys):
-    assert invoke([name, "x", "--flag"]) == 2
-    assert f"longarm {name} is not there yet" in capsys.readouterr().err
 
 
 def test_every_command_helps_with_an_example(capsys):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -21,6 +23,10 @@ def test_weights_always_sum_to_one(channels: dict[Channel, float]) -> None:
 
 def test_no_evidence_leaves_the_prior() -> None:
     assert after({}) == pytest.approx(dict(PRIOR))
+
+
+def test_a_channel_without_a_number_says_nothing() -> None:
+    assert after({Channel.CURRENT_RATIO: math.nan, Channel.MARKERS: 3.0}) == after({Channel.MARKERS: 3.0})
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ from executive.testing import FakeBackend, FakeWorld, OverheadLocalizer
 from executive.types import Outcome, Point, PoseEstimate, Quality, Reason, Segment, Source, TiltReading
 
 SEGMENT = Segment(Point(2.0, 0.0), Point(3.0, 0.0), 0.03, 0.25, 0.03)
+ENDS_HERE = replace(SEGMENT, start=Point(1.0, 0.0), end=Point(2.0, 0.0))
 AHEAD, BEHIND, ASIDE = Point(2.5, 0.0), Point(1.95, 0.0), Point(2.0, 1.0)
 PATIENCE_TICKS = 1500
 
@@ -197,7 +198,8 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("take_picture", Reason.DEVICE, ends("cameras", "take", Reason.DEVICE), {}),
     ("wait", Reason.DONE, nothing, {"duration": 3.0}),
     ("watch_motion", Reason.UNEXPECTED, jumped, {}),
-    ("waypoint_reached", Reason.DONE, nothing, {}),
+    ("waypoint_reached", Reason.DONE, nothing, {"segment": ENDS_HERE}),
+    ("waypoint_reached", Reason.UNEXPECTED, nothing, {}),
 ]
 for _name, _values in DRIVES.items():
     CASES += [

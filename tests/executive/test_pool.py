@@ -87,6 +87,14 @@ def test_a_strategy_that_may_leave_the_margin_is_refused() -> None:
     assert pool(BACK)[0].choose(situation(Hypothesis.STUCK_ON_OBSTACLE, y_m=0.2)).strategy is None
 
 
+def test_a_strategy_that_stays_where_it_is_needs_no_room() -> None:
+    unsure = situation(Hypothesis.SLIP_TURNING)
+    unsure = replace(unsure, pose=pose(0.5, 0.0, 0.0, sigma_m=0.2))
+    assert pool(TURN)[0].choose(unsure).strategy == "turn"
+    creeping = replace(TURN, excursion_m=0.001)
+    assert pool(creeping)[0].choose(unsure).strategy is None
+
+
 def test_a_tie_between_opposed_remedies_calls_home() -> None:
     on = strategy("press_on", {Hypothesis.SLIP_LONGITUDINAL: 1.0}, opposes=frozenset({"back"}))
     back = strategy("back", {Hypothesis.STUCK_ON_OBSTACLE: 1.0}, opposes=frozenset({"press_on"}))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -153,3 +154,19 @@ def test_covariance_stays_symmetric_and_positive_over_a_long_trek() -> None:
         state = prediction.correct(state, state.pose().on(None), NOISE)
     assert np.array_equal(state.covariance, state.covariance.T)
     assert np.linalg.eigvalsh(state.covariance).min() > 0.0
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"position_site_m": (math.nan, 0.0, 0.0)}, "the pose found is no number"),
+        ({"quat_site_body": (0.0, 0.0, math.inf, 1.0)}, "the pose found is no number"),
+        ({"covariance": np.full((6, 6), np.nan)}, "the pose found is no number"),
+        ({"time_s": math.nan}, "the pose found is no number"),
+        ({"time_s": 99.0}, "the pose found is 1 s older than the question"),
+        ({"time_s": 100.0}, None),
+    ],
+)
+def test_a_pose_that_is_no_number_or_old_says_nothing(change, why):
+    pose = PoseEstimate(101.0, (1.0, 2.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), Source.MARKERS)
+    assert prediction.unusable(replace(pose, **change), since_s=100.0) == why

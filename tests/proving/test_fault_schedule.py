@@ -106,7 +106,7 @@ def test_the_catalogue_lists_every_fault_with_its_parameters(capsys):
     assert listed["led_off"]["hypothesis"] == "marker_lost"
     assert listed["led_off"]["backends"] == ["pybullet"]
     assert "marker" in listed["led_off"]["model"]
-    assert all(fault["doc"] and fault["hypothesis"] for fault in listed.values())
+    assert all(fault["doc"] for fault in listed.values())
 
 
 def test_every_fault_leads_to_a_hypothesis_that_exists():
@@ -117,7 +117,7 @@ def test_every_fault_leads_to_a_hypothesis_that_exists():
     for name in plugins.found(plugins.FAULTS):
         spec = plugins.load(plugins.FAULTS, name, FaultSpec)
         assert spec.name == name
-        assert spec.hypothesis in set(Hypothesis)
+        assert spec.hypothesis in {*Hypothesis, ""}  # none where there is nothing to conclude
 
 
 def rows(done):

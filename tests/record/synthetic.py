@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from executive.rows import row
 from executive.telemetry import RunFigures, TruthRecorder, summarise, write_result
 from executive.telemetry.events import (
     AnnotationsEvent,
@@ -295,7 +296,7 @@ def make_run(folder: Path, seed: int = 7) -> Path:
         story.note("navigate", "success")
         record.write(Stop("reached"), story.rover.time)
     wall = {"physics": 6.2, "render": 9.1, "perception": 4.0, "tick": 1.1, "record": 0.4}
-    expectation = {"text": "final_error below 30 mm", "met": True, "robustness": 0.019}
+    expectation = row("final_error below 30 mm", True, 0.019, "m")
     figures = RunFigures(21.3, wall, [expectation])
     write_result(folder / "result.json", summarise(folder / "record.mcap", folder / "truth.mcap", figures))
     return folder

@@ -122,7 +122,7 @@ def test_impossible_travels_are_refused(world_of: WorldMaker) -> None:
 
 def test_weak_motor_shows_in_its_encoder(world_of: WorldMaker) -> None:
     world = world_of(plain())
-    world.tracks.speed_factors[0] = 0.5
+    world.tracks.motors[0].speed_factor = 0.5
     world.tracks.drive(0.1, 0.1, 0.0014)
     for _ in range(30):
         world.advance()

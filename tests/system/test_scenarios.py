@@ -1,28 +1,69 @@
-"""The shipped scenarios keep what they expect of themselves, asked in the tier that is quick enough."""
+"""The shipped scenarios: every fault has one, a reader learns from each, and a few of them run here.
+
+All of them run in `longarm test scenarios -j 2`, a step of `.ci/run`.
+"""
 
 from pathlib import Path
 
 import pytest
 
-from executive.app import RunOptions, run
-from executive.check import check_file
+from docs.list_scenarios import PAGE, lesson, page
+from executive import plugins
+from proving.suite.collect import collect
+from proving.suite.run import SuiteOptions, run_suite
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SURVEYED = "marsyard"  # has a test of its own, which knows when the elevation model is missing
-NAMES = sorted(path.stem for path in SCENARIOS.glob("*.yaml"))
+FILES = [path for path in sorted(SCENARIOS.rglob("*.yaml")) if path.stem != SURVEYED]
+REPRESENTATIVE = (
+    "turning_on_loose_sand",
+    "rock_on_path",
+    "tracks/motor_dead",
+    "terrain/rock_in_a_narrow_corridor",
+    "markers/marker_occluded",
+    "estimation/pose_outlier",
+    "link/replayed_uplink",
+    "executive/process_killed",
+)
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name != SURVEYED])
-def test_a_shipped_scenario_has_no_problem(name):
-    assert not check_file(SCENARIOS / f"{name}.yaml")
+@pytest.fixture(scope="module")
+def suite():
+    """All of it, resolved, which finds every problem of a file."""
+    return collect(FILES)
+
+
+def test_every_fault_of_the_catalogue_has_a_scenario(suite):
+    injected = {fault.spec.name for each in suite for fault in each.scenario.faults}
+    assert set(plugins.found(plugins.FAULTS)) <= injected
+
+
+def test_every_kind_of_onset_and_profile_is_shown(suite):
+    faults = [fault for each in suite for fault in each.scenario.faults]
+    onsets = {name for fault in faults for name in fault.start.model_dump(exclude_none=True)}
+    profiles = {name for fault in faults if fault.profile for name in fault.profile.model_fields_set}
+    assert onsets >= {"time", "progress", "waypoint", "node", "strategy", "phase", "when", "edge", "held"}
+    assert profiles == {"ramp", "intermittent", "random"}
+
+
+def test_every_scenario_is_named_as_its_file_and_expects_something(suite):
+    assert [each.file.stem for each in suite] == [each.scenario.name for each in suite]
+    assert [each.name for each in suite if not each.scenario.expect.outcome] == []
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+def test_a_scenario_says_first_what_its_reader_learns(file):
+    assert len(lesson(file)) > 40
+
+
+def test_the_list_of_scenarios_is_up_to_date():
+    assert PAGE.read_text() == page(), "run python docs/list_scenarios.py"
 
 
 @pytest.mark.sim
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in NAMES if name != SURVEYED])
-def test_a_shipped_scenario_comes_to_what_it_expects(tmp_path, name):
-    done = run(SCENARIOS / f"{name}.yaml", RunOptions(out=tmp_path / "run", tier="geometric", bar=False))
-    unmet = [row["text"] for row in done.result["expectations"] if not row["met"]]
-    assert unmet == []
-    assert done.exit_code == 0
-    assert all(row["fired"] for row in done.result["faults"])
+def test_a_few_scenarios_come_to_what_they_expect(tmp_path):
+    few = collect(SCENARIOS / f"{name}.yaml" for name in REPRESENTATIVE)
+    told = list(run_suite(few, SuiteOptions(tmp_path)))
+    assert {row.collected.file.stem: row.verdict.message for row in told if not row.verdict.good} == {}
+    assert len(told) == len(REPRESENTATIVE)

@@ -1,0 +1,78 @@
+"""The shape of a scenario's `expect`: what its run must come to. What is not said is not judged."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from executive.config.source import Source
+from executive.config.validate import Strict
+from executive.units import Angle, Duration, Force, Length
+
+Name = Annotated[str, Field(min_length=1, max_length=100)]
+FormulaText = Annotated[str, Field(min_length=1, max_length=1000)]
+OutcomeName = Literal["reached", "safe_hold", "help", "time_limit", "error"]
+
+
+class Below(Strict):
+    below: Length
+
+
+class BelowAngle(Strict):
+    below: Angle
+
+
+class BelowForce(Strict):
+    below: Force
+
+
+class AtLeast(Strict):
+    at_least: Annotated[int, Field(ge=0)]
+
+
+class Noticed(Strict):
+    """The named fault, and how soon after it took effect."""
+
+    fault: Name
+    within: Duration | None = None
+
+
+class Diagnosed(Noticed):
+    """The named fault must be recognised `as` a hypothesis within this time of its taking effect."""
+
+    as_: Annotated[Name, Field(alias="as")]
+
+
+class Expect(Strict):
+    """Every field that takes a list also takes what would be its only member."""
+
+    outcome: tuple[OutcomeName, ...] = ()
+    final_error: Below | None = None
+    driven_beyond_off_track: Below | None = None
+    max_cross_track: Below | None = None
+    max_tilt: BelowAngle | None = None
+    max_tether: BelowForce | None = None
+    at_rest: Literal[True] | None = None
+    waypoints_reached: AtLeast | None = None
+    detected: tuple[Noticed, ...] = ()
+    diagnosed: tuple[Diagnosed, ...] = ()
+    recovered: tuple[Noticed, ...] = ()
+    strategies_tried: tuple[Name, ...] = ()
+    strategies_not_tried: tuple[Name, ...] = ()
+    always: tuple[FormulaText, ...] = ()
+    eventually: tuple[FormulaText, ...] = ()
+    until: tuple[FormulaText, ...] = ()
+    holds: tuple[FormulaText, ...] = ()
+
+
+LISTS = tuple(name for name, field in Expect.model_fields.items() if field.default == ())
+
+
+def with_lists(source: Source) -> Source:
+    """The source of a scenario, every single value where `expect` takes a list made the list of it."""
+    expect = source.data.get("expect") if isinstance(source.data, dict) else None
+    for name in LISTS:
+        if isinstance(expect, dict) and not isinstance(expect.get(name, []), list):
+            source = source.only_member(("expect", name))
+    return source

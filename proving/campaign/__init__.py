@@ -1,0 +1,1 @@
+"""Campaigns: one scenario many times over, with what varies drawn per case."""

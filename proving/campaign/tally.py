@@ -1,0 +1,101 @@
+"""What a campaign has come to so far: counts, shares with intervals, and whether that is enough."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field
+from typing import Any
+
+from executive.errors import LongarmError
+from proving.campaign.interval import wilson
+from proving.campaign.shape import StopRule
+from proving.verdict import GOOD, Word
+
+
+@dataclass(frozen=True)
+class Ended:
+    """One case that has ended, as the journal tells it."""
+
+    number: int
+    setting: str
+    seed: int
+    verdict: str
+    kind: str
+    cause: str
+    outcome: str
+    wall_s: float
+    inside_s: float
+    digest: str
+
+    @property
+    def good(self) -> bool:
+        return self.verdict in GOOD
+
+    def to_json(self) -> dict[str, Any]:
+        """A line of the journal."""
+        rest = {name: value for name, value in vars(self).items() if name not in ("number", "kind")}
+        return {"event": "ended", "case": self.number, "class": self.kind, **rest}
+
+    @classmethod
+    def from_json(cls, line: dict[str, Any]) -> Ended:
+        """The case that a line of the journal tells of."""
+        rest = {name: value for name, value in line.items() if name not in ("event", "case", "class")}
+        try:
+            return cls(number=line["case"], kind=line["class"], **rest)
+        except (KeyError, TypeError) as error:
+            raise LongarmError(f"got a journal line that cannot be read: {error}") from None
+
+
+@dataclass
+class Tally:
+    """The cases that have ended, by number."""
+
+    ended: dict[int, Ended] = field(default_factory=dict)
+
+    def add(self, case: Ended) -> None:
+        self.ended[case.number] = case
+
+    def verdicts(self) -> dict[str, int]:
+        """How many cases came to each verdict, best first."""
+        counts = Counter(case.verdict for case in self.ended.values())
+        return {str(word): counts[word] for word in Word if counts[word]}
+
+    def classes(self) -> dict[str, int]:
+        return dict(Counter(case.kind for case in self.ended.values()))
+
+    def shares(self, confidence: float = 0.95) -> dict[str, dict[str, Any]]:
+        """For each setting the share of good verdicts with its interval."""
+        of_setting: dict[str, list[bool]] = defaultdict(list)
+        for number in sorted(self.ended):
+            of_setting[self.ended[number].setting].append(self.ended[number].good)
+        return {name: _share(good, confidence) for name, good in of_setting.items()}
+
+    def outside_share(self) -> float | None:
+        """Share of the cases' wall time outside the simulation's step and the executive's tick."""
+        done = [case for case in self.ended.values() if case.inside_s > 0.0]
+        total_s = sum(case.wall_s for case in done)
+        return 1.0 - sum(case.inside_s for case in done) / total_s if total_s else None
+
+    def enough(self, rule: StopRule | None) -> bool:
+        """Whether each setting's interval is narrow enough, judged from the cases before the first gap.
+
+        So it does not depend on the order in which cases happen to end.
+        """
+        if rule is None:
+            return False
+        prefix = Tally()
+        while (case := self.ended.get(len(prefix.ended))) is not None:
+            prefix.add(case)
+        widths = [s["interval"][1] - s["interval"][0] for s in prefix.shares(rule.confidence).values()]
+        return bool(widths) and max(widths) < rule.interval
+
+
+def _share(good: list[bool], confidence: float) -> dict[str, Any]:
+    low, high = wilson(sum(good), len(good), confidence)
+    return {
+        "cases": len(good),
+        "good": sum(good),
+        "share": sum(good) / len(good),
+        "confidence": confidence,
+        "interval": [low, high],
+    }

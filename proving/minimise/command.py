@@ -1,0 +1,55 @@
+"""`longarm minimise`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+FILE = click.Path(path_type=Path)
+
+
+@click.command("minimise")
+@click.argument("case", type=FILE)
+@click.option("-o", "--output", type=FILE, help="The file to write; NAME-minimal.yaml without it.")
+@click.option("--seed", type=int, help="Replace the scenario's seed.")
+@click.option("--tier", type=click.Choice(["full", "geometric"]), help="Replace the scenario's tier.")
+@click.option("--runs", type=click.IntRange(min=1), default=200, show_default=True, help="At most so many.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option("--quiet", is_flag=True, help="No progress on stderr.")
+def minimise(
+    case: Path,
+    output: Path | None,
+    seed: int | None,
+    tier: str | None,
+    runs: int,
+    as_json: bool,
+    quiet: bool,
+) -> int:
+    """Shrink a failing CASE, a run folder or a scenario file, to the least that still fails in the same way.
+
+    Fewer faults, a shorter path, a simpler world, then simpler, shorter and weaker faults. What is first
+    violated stays the same.
+
+    Example: longarm minimise runs/rock_on_path-7 -o scenarios/rock_minimal.yaml
+    """
+    from proving.minimise.minimise import minimise as shrink
+
+    silent = quiet or as_json
+    made = shrink(case, seed, tier, runs, lambda step: None if silent else click.echo(step, err=True))
+    if made.failure is None:
+        click.echo(f"{case}: got a case that does not fail, expected one that does", err=True)
+        return 1
+    file = output or Path(f"{made.before['scenario']}-minimal.yaml")
+    file.write_text(made.text(case))
+    sizes = {noun: {"before": before, "after": after} for noun, before, after in made.sizes()}
+    if as_json:
+        told = {"failure": str(made.failure), "file": str(file), "runs": made.runs, "sizes": sizes}
+        click.echo(json.dumps(told | {"steps": made.steps, "exhausted": made.exhausted}, indent=2))
+        return 0
+    for noun, size in sizes.items():
+        click.echo(f"{size['before']} {noun} → {size['after']}")
+    used_up = ", all there were: it may be smaller yet" if made.exhausted else ""
+    click.echo(f"{file} still fails with {made.failure}, after {made.runs} runs{used_up}")
+    return 0

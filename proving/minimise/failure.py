@@ -1,0 +1,60 @@
+"""How a case fails: the first thing that is violated, so that two failures can be told to be the same."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from executive.scenario import ResolvedScenario
+from proving.engine import CaseClass, Ending
+
+_EXCEPTION = re.compile(r"\b([A-Z]\w*(?:Error|Exception|Exit|Interrupt)|\w+Broken)\b")
+
+
+@dataclass(frozen=True)
+class Failure:
+    """`kind` is unsafe, expectation, outcome, invalid or error; `text` says what, without times."""
+
+    kind: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.kind}: {self.text}"
+
+
+def failure_of(ending: Ending, result: Mapping[str, Any], scenario: ResolvedScenario) -> Failure | None:
+    """The failure of a case that has ended; None if it is as it should be."""
+    if ending.kind in (CaseClass.INFRASTRUCTURE, CaseClass.REFUSED):
+        return Failure(str(ending.kind), ending.cause)
+    if result["outcome"] == "error" and not _allowed(scenario):
+        return Failure("error", _what(ending, str(result["reason"])))
+    if result["outcome"] == "invalid":
+        return Failure("invalid", str(result["reason"]).split(" never ")[0])
+    for kind, rows in (("unsafe", result.get("safety") or ()), ("expectation", result["expectations"])):
+        missed = [row for row in rows if row["met"] is False]
+        if missed:
+            return Failure(kind, str(min(missed, key=_when_s)["text"]))
+    if not result["expectations"] and result["outcome"] != "reached":
+        return Failure("outcome", str(result["outcome"]))
+    return None
+
+
+def _allowed(scenario: ResolvedScenario) -> bool:
+    outcome = scenario.expect.outcome
+    return "error" in ((outcome,) if isinstance(outcome, str) else tuple(outcome or ()))
+
+
+def _what(ending: Ending, reason: str) -> str:
+    """A hang is a hang; a defect is known by its exception."""
+    if ending.cause and ending.cause != "error":
+        return ending.cause
+    raised = _EXCEPTION.search(reason)
+    return raised[1] if raised else reason
+
+
+def _when_s(row: Mapping[str, Any]) -> float:
+    told = row.get("t_violation_s")
+    return math.inf if told is None else float(told)

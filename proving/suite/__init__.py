@@ -1,0 +1,1 @@
+"""Scenario files as tests: `longarm test`, and the same verdicts for pytest."""
