@@ -72,18 +72,20 @@ def joint_fix(
     sighting = _sighting(chain, expectation, tilt_rad)
     readings = Readings.of(chain, sighting, expectation.surface)
     likely = _climb_all(chain, evidence, readings, starts, _flux_unit(cameras, spread))
-    likely.sort(key=lambda one: -_worth(expectation, one))
-    strongest = max((one.snr for one in likely), default=0.0)
-    if strongest < threshold:
+    shown = [one for one in likely if one.snr >= threshold]
+    if not shown:
+        strongest = max((one.snr for one in likely), default=0.0)
         return Rejection(
             f"joint SNR {strongest:.1f} of all markers, {threshold:.1f} needed among {weighed} hypotheses", 0
         )
-    best, shared = _with_own_fluxes(chain, evidence, readings, likely[0])
+    nearest = max(shown, key=lambda one: _worth(expectation, one))
+    rivals = [_worth(expectation, one) for one in likely if one is not nearest]
+    lead = _worth(expectation, nearest) - max(rivals, default=-math.inf)
+    best, shared = _with_own_fluxes(chain, evidence, readings, nearest)
     shining = int((best.flux_counts > 0).sum())
     if shining < _LEAST_MARKERS:
         return Rejection(f"{shining} of {len(best.flux_counts)} markers shine at the best pose", shining)
     best = replace(best, covariance=observed_covariance(chain, evidence, readings, best, shared))
-    lead = _worth(expectation, likely[0]) - _worth(expectation, likely[1]) if likely[1:] else math.inf
     note = f"joint SNR {best.snr:.1f}, {threshold:.1f} needed among {weighed} hypotheses"
     return _gated(chain, best, lead, note)
 

@@ -19,7 +19,7 @@ from perception.difference import Difference
 from perception.pose import Readings
 from perception.psf import Spread
 
-_MAX_STEPS = 40
+_MAX_STEPS = 100
 _MAX_STEP_PX = 0.7
 _PROBE_SIGMAS = 0.04
 _CONVERGED_GAIN = 1e-4  # of twice the log likelihood: a hundredth of a sigma
