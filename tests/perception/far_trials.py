@@ -142,59 +142,59 @@ def run_trial(
 ) -> Trial:
     """Draw, expose, localise; `dark` leaves the LEDs off, so that whatever is found is false."""
     setting = draw(range_m, rng, rig or RigCalibration())
-    chain, said = setting.true.chain, setting.said
     leds, joint = sequence_for(setting, pairs)
-    spread = marker_spread(chain.rig, view_of(chain, said).range_m)
-    windows = predicted_windows(
-        chain, setting.expectation.state, setting.expectation.covariance, spread.radius_px + 8.0
-    )
-    assert windows is not None
+    way = _jointly if joint else _singly
+    windows = _windows(setting)
     cameras = [
         _Camera.of(setting.true, c, w, rng, nuisance or Nuisance(), dark) for c, w in enumerate(windows)
     ]
-    watch = Stopwatch()
-    unused = 0.0
-    if joint:
-        stacks = [Stack(4, chain.rig.sensor.noise_counts) for _ in cameras]
-        for first in range(0, len(leds), CHUNK):
-            part = slice(first, first + CHUNK)
-            for camera, stack in zip(cameras, stacks, strict=True):
-                before = watch.elapsed_s()
-                frames = camera.expose(leds, part, rng)
-                unused += watch.elapsed_s() - before
-                stack.add(frames, leds[part])
-        found = joint_fix(
-            chain,
-            [s.difference() for s in stacks],
-            [(w.u, w.v) for w in windows],
-            spread,
-            setting.expectation,
-            setting.tilt_rad,
-        )
-        weights = np.sqrt(np.diag(np.linalg.inv(np.cov(lit(leds, 4).T, bias=True) * len(leds))))
-    else:
-        counts = tuple(camera.expose(leds, slice(None), rng) for camera in cameras)
-        images = Images(0.0, Shot(leds), windows, counts, HeadReading(0.0, *said.head_rad, moving=False))
-        unused = watch.elapsed_s()
-        look = look_at(chain.rig, images, view_of(chain, setting.expectation.state).range_m)
-        found = choose(
-            chain,
-            look.candidates,
-            said.head_rad,
-            said.joints_rad,
-            setting.tilt_rad,
-            setting.expectation.prior,
-        )
-        weights = np.linalg.norm(pair_weights(leds, 4), axis=1)
+    found, weights, seconds = way(setting, cameras, windows, leds, rng)
     limit = bound(setting, weights, GROUND_SIGMA_M if joint else np.inf)
-    seconds = watch.elapsed_s() - unused
     fix = getattr(found, "fix", None)
-    if fix is None:
-        return Trial(None, None, limit, seconds, found.why)
-    misfit = setting.expectation.misfit(fix)
-    if misfit:
-        return Trial(None, None, limit, seconds, misfit)
-    return Trial(_error(said.site_body, fix), fix.covariance, limit, seconds, "")
+    why = found.why if fix is None else setting.expectation.misfit(fix)
+    if why:
+        return Trial(None, None, limit, seconds, why)
+    return Trial(_error(setting.said.site_body, fix), fix.covariance, limit, seconds, "")
+
+
+def _windows(setting: Setting) -> tuple[Window, Window]:
+    chain, expected = setting.true.chain, setting.expectation
+    margin = marker_spread(chain.rig, view_of(chain, expected.state).range_m).radius_px + 8.0
+    windows = predicted_windows(chain, expected.state, expected.covariance, margin)
+    assert windows is not None
+    return windows
+
+
+def _jointly(setting, cameras, windows, leds, rng):
+    """The joint answer, the noise of each LED's difference in frames' noises, processing time."""
+    chain, watch, unused = setting.true.chain, Stopwatch(), 0.0
+    stacks = [Stack(4, chain.rig.sensor.noise_counts) for _ in cameras]
+    for first in range(0, len(leds), CHUNK):
+        part = slice(first, first + CHUNK)
+        for camera, stack in zip(cameras, stacks, strict=True):
+            before = watch.elapsed_s()
+            frames = camera.expose(leds, part, rng)
+            unused += watch.elapsed_s() - before
+            stack.add(frames, leds[part])
+    spread = marker_spread(chain.rig, view_of(chain, setting.expectation.state).range_m)
+    corners = [(w.u, w.v) for w in windows]
+    differences = [stack.difference() for stack in stacks]
+    found = joint_fix(chain, differences, corners, spread, setting.expectation, setting.tilt_rad)
+    seconds = watch.elapsed_s() - unused
+    scatter = np.cov(lit(leds, 4).T, bias=True) * len(leds)
+    return found, np.sqrt(np.diag(np.linalg.inv(scatter))), seconds
+
+
+def _singly(setting, cameras, windows, leds, rng):
+    """The same for markers found one by one."""
+    chain, said = setting.true.chain, setting.said
+    counts = tuple(camera.expose(leds, slice(None), rng) for camera in cameras)
+    images = Images(0.0, Shot(leds), windows, counts, HeadReading(0.0, *said.head_rad, moving=False))
+    watch = Stopwatch()
+    look = look_at(chain.rig, images, view_of(chain, setting.expectation.state).range_m)
+    prior = setting.expectation.prior
+    found = choose(chain, look.candidates, said.head_rad, said.joints_rad, setting.tilt_rad, prior)
+    return found, np.linalg.norm(pair_weights(leds, 4), axis=1), watch.elapsed_s()
 
 
 def _error(true: Transform, fix: Fix) -> np.ndarray:
