@@ -21,6 +21,7 @@ from executive.telemetry.recorder import Recorder
 from executive.types import Outcome, Reason
 
 TELEMETRY_PERIOD_S = 10.0
+SETTLING_S = 180.0  # as long as a belt may run on after its stop
 
 
 @dataclass(frozen=True)
@@ -144,8 +145,14 @@ def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
 
 
 def _see_it_rest(run: Run) -> None:
-    """A tick to settle, one that must find it there, and a report: a stop nobody saw proves nothing."""
+    """A tick to settle, more while a belt runs on, one that must find it there, and a report.
+
+    A stop nobody saw proves nothing.
+    """
+    by_s = run.services.clock.now_s + SETTLING_S
     run.backend.advance()
+    while run.services.devices.tracks.read().moving and run.services.clock.now_s < by_s:
+        run.backend.advance()
     run.backend.advance()
     now = run.services.classification.sense(run.services.devices)
     run.journal.telemetry(now, run.services.devices, run.services.classification.predicted())

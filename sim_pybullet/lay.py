@@ -12,8 +12,8 @@ class Bend:
     """Where the tether bends on its way to the rover.
 
     Sliding round it multiplies the pull at the spool by `capstan` (e to the friction times the angle of
-    wrap). Where it is `caught` instead, it only stretches from here on, by 1 / `stiffness_n_m`, and the
-    sensor at the spool feels the share `felt` of it.
+    wrap); what does not slide stretches instead. Where it is `caught`, it only stretches from here on, by
+    1 / `stiffness_n_m`, and the sensor at the spool feels the share `felt` of it.
     """
 
     at_site_m: Vec3

@@ -36,6 +36,7 @@ class SimTether:
         self.tension_n, self._felt_n = 0.0, 0.0
         self.jammed = False
         self.bend: Bend | None = None
+        self._past_m = 0.0  # what has slid past the bend
         self._reading = PerTick(self._measure, lambda: clock.ticks)
 
     def way_m(self, anchor_site_m: Array) -> float:
@@ -55,10 +56,20 @@ class SimTether:
             felt_n = DRAG_N + stiffness_n_m * (distance_m - free_m)
         else:
             felt_n = DRAG_N if distance_m >= self.length_m else 0.0
-        self.tension_n = felt_n * (self.bend.capstan if self.bend else 1.0)
+        self.tension_n = self._at_the_rover(felt_n, last_m)
         self._felt_n = felt_n * (caught.felt if caught else 1.0)
         self.length_m = max(self.length_m, min(distance_m, free_m))
         return toward * (self.tension_n / last_m)
+
+    def _at_the_rover(self, felt_n: float, last_m: float) -> float:
+        """Behind a bend friction holds what the rover pulls, as far as the capstan goes; it does not pull."""
+        if self.bend is None or self.bend.caught:
+            self._past_m = 0.0
+            return felt_n
+        self._past_m = self._past_m or last_m
+        tension_n = min(STIFFNESS_N_M * max(0.0, last_m - self._past_m), felt_n * self.bend.capstan)
+        self._past_m = max(self._past_m, last_m - tension_n / STIFFNESS_N_M)
+        return tension_n
 
     def _way(self, anchor_site_m: Array) -> tuple[float, Array]:
         """Length up to the last bend [m], and the vector from the rover to it."""

@@ -75,7 +75,9 @@ class TetherCapstan(_Pulling, WorldFault[Wrap]):
 
     def act(self, sim: WorldFaults, level: float) -> None:
         capstan = math.exp(self.p.friction * self.p.angle * level)
-        sim.world.tether.bend = Bend(sim.on_the_tether(self.p.behind), capstan) if level else None
+        tether = sim.world.tether
+        at = tether.bend.at_site_m if tether.bend else sim.on_the_tether(self.p.behind)
+        tether.bend = Bend(at, capstan) if level else None
         sim.world.wake()
 
 

@@ -11,6 +11,7 @@ from executive.clock import Clock
 from executive.rig import HeadCalibration
 from executive.types import Call, Reason
 from sim_pybullet.head import SimHead
+from sim_pybullet.lay import Bend
 from sim_pybullet.link import SimLink
 from sim_pybullet.rover import CABIN_LINK
 from sim_pybullet.tether import DRAG_N, SLACK_M
@@ -212,6 +213,21 @@ def test_jammed_tether_holds_the_rover_back(world_of: WorldMaker) -> None:
     weight_n = world.weight_n
     assert gone_m < 0.1
     assert 0.4 * weight_n < world.tether.tension_n < 0.9 * weight_n
+
+
+def test_a_tether_round_a_rock_holds_back_but_never_pulls(world_of: WorldMaker) -> None:
+    world = world_of(plain(soil="gravel"))
+    drive(world, 0.1, 0.1)
+    start, _ = world.body.pose()
+    x, y, z = (start + 0.2 * (world.tether.spool_site_m - start)).tolist()
+    world.tether.bend = Bend((x, y, z), capstan=1e6)
+    for _ in range(20):
+        world.advance()
+    assert world.body.pose()[0] == pytest.approx(start, abs=1e-3)
+    world.tracks.drive(0.3, 0.3, 0.0014)
+    for _ in range(220):
+        world.advance()
+    assert 0.2 * world.weight_n < world.tether.tension_n < 0.9 * world.weight_n
 
 
 def test_call_to_ground_is_answered_after_forty_minutes() -> None:
