@@ -93,7 +93,7 @@ def _prepare(
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
     built = build(scenario.tree, services, inputs, strategy_trees(strategies, scenario.instead))
-    faults.wrap_tree(TreeParts(built.paths, built.store.values))
+    faults.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
     return Run(
         root=built.root,
         trace=built.trace,

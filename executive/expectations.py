@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from executive.config.expect import Diagnosed, Expect, Noticed
+from executive.config.expect import Diagnosed, DurationBand, Expect, LengthBand, Noticed
 from executive.config.validate import listed
 from executive.expected import formulas
+from executive.happenings import ends, in_order, never, times
 from executive.rows import Row, row
 from executive.telemetry.evidence import DETECTION_GRACE_S, first_leading
 from executive.telemetry.history import History
@@ -36,6 +37,7 @@ def judge(expect: Expect, result: Mapping[str, Any], history: History, world: Hi
         *_of_limits(expect, history, world),
         *_of_faults(expect, result, history),
         *_of_strategies(expect, result),
+        *_of_nodes(expect, history),
         *_of_signals(expect, history, world),
     ]
 
@@ -49,6 +51,10 @@ def _of_the_end(expect: Expect, result: Mapping[str, Any], history: History, wor
         spare = result["waypoints"]["reached"] - expect.waypoints_reached.at_least
         text = f"at least {expect.waypoints_reached.at_least} way-points reached"
         yield row(text, spare >= 0, spare, "", end_s)
+    if expect.mission_time is not None:
+        yield _within("mission_time", expect.mission_time, end_s, "s", end_s)
+    if expect.path is not None:
+        yield _within("path", expect.path, result["truth"]["path_m"], "m", end_s)
     if expect.final_error is not None:
         limit_m, error_m = expect.final_error.below, result["truth"]["final_error_m"]
         text = f"final_error below {limit_m * 1e3:g} mm"
@@ -58,6 +64,16 @@ def _of_the_end(expect: Expect, result: Mapping[str, Any], history: History, wor
             yield row(text, error_m < limit_m, limit_m - error_m, "m", end_s)
     if expect.at_rest:
         yield _known(at_rest(history, world), end_s)
+
+
+def _within(name: str, band: LengthBand | DurationBand, value: float | None, unit: str, end_s: float) -> Row:
+    """Whether a value lies between its bounds; what is not known does not."""
+    bounds = [(word, limit) for word in ("above", "below") if (limit := getattr(band, word)) is not None]
+    text = f"{name} {' and '.join(f'{word} {limit:g} {unit}' for word, limit in bounds)}"
+    if value is None:
+        return row(text, False, t_violation_s=end_s, warning=NO_TRUTH)
+    spare = min(value - limit if word == "above" else limit - value for word, limit in bounds)
+    return row(text, spare > 0, spare, unit, end_s)
 
 
 def _of_limits(expect: Expect, history: History, world: History) -> Iterator[Row]:
@@ -124,6 +140,13 @@ def _of_strategies(expect: Expect, result: Mapping[str, Any]) -> Iterator[Row]:
         yield row(f"{name} was tried", name in tried_s, t_violation_s=result["mission_s"])
     for name in expect.strategies_not_tried:
         yield row(f"{name} was not tried", name not in tried_s, t_violation_s=tried_s.get(name))
+
+
+def _of_nodes(expect: Expect, history: History) -> Iterator[Row]:
+    seen = ends(history)
+    yield from in_order(expect.in_order, seen, history.end_s)
+    yield from never(expect.never, seen)
+    yield from times(expect.times, seen, history.end_s)
 
 
 def _of_signals(expect: Expect, history: History, world: History) -> Iterator[Row]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
+from executive.addresses import means
 from executive.fault_triggers import Trigger
 from executive.guards import parse_guard
 from executive.signals import LIVE_TYPES, heard
@@ -14,8 +15,7 @@ from executive.types import Call
 class Sightings:
     """What has happened so far, as far as triggers ask for it; fed with every event of the record.
 
-    A node counts as entered each time it is seen running anew, or ends at once. Nodes are called by the
-    last part of their path; `#2` and the like behind it count together.
+    A node counts as entered each time it is seen running anew, or ends at once; `entered` has its path.
     """
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ class Sightings:
     def _node(self, change: events.NodeChange) -> None:
         runs = change.status == "running"
         if change.path not in self._running and change.status != "invalid":
-            self.entered["node", change.path.rsplit("/", 1)[-1].split("#")[0]] += 1
+            self.entered["node", change.path] += 1
         (self._running.add if runs else self._running.discard)(change.path)
 
 
@@ -71,8 +71,17 @@ class Onset:
             return t.waypoint in seen.waypoints
         if self._condition is not None:
             return self._held(self._condition.holds(lambda name, _: seen.values.get(name)), now_s)
-        kind = "node" if t.node is not None else "strategy" if t.strategy is not None else "phase"
-        return seen.entered[kind, str(getattr(t, kind))] >= (t.count or 1)
+        return self._entered(seen) >= (t.count or 1)
+
+    def _entered(self, seen: Sightings) -> int:
+        """How often that has been entered which the trigger waits for."""
+        t = self._trigger
+        if t.node is not None:
+            return sum(
+                n for (kind, path), n in seen.entered.items() if kind == "node" and means(t.node, path)
+            )
+        kind = "strategy" if t.strategy is not None else "phase"
+        return seen.entered[kind, str(getattr(t, kind))]
 
     def _held(self, known: bool | None, now_s: float) -> bool:
         """A condition as it is, or its edge; true from then on for as long as `held` asks."""

@@ -16,6 +16,7 @@ from pydantic import BaseModel
 from executive.clock import Clock
 from executive.pool import Strategy
 from executive.ports import Backend, Devices, Localizer
+from executive.types import Outcome
 
 CATEGORIES = (
     *("tracks", "terrain", "tether", "head", "cameras", "markers", "light"),
@@ -41,10 +42,14 @@ class Cue:
 
 @dataclass(frozen=True)
 class TreeParts:
-    """What a fault of the executive may reach: every node by its path (outermost behaviour), the values."""
+    """What a fault of the executive may reach: every node by its path (outermost behaviour), the values.
+
+    `fail` says in a node's stead that it has failed, and why.
+    """
 
     nodes: Mapping[str, Behaviour]
     values: MutableMapping[str, object]
+    fail: Callable[[str, Outcome[object]], None] = lambda path, outcome: None
 
 
 class Fault:

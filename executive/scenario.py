@@ -28,9 +28,10 @@ from executive.expected import expect_problems
 from executive.fault_entries import ResolvedFault, Setting, fault_entries, ungrouped
 from executive.pool_plugins import load_strategies, strategy_trees
 from executive.rig import RigCalibration
+from executive.targets import target_problems
 from executive.tree.literals import literal
 from executive.tree.load import Instead, load_tree
-from executive.tree.spec import TreeSpec, walk
+from executive.tree.spec import TreeSpec
 
 
 @dataclass(frozen=True)
@@ -136,10 +137,8 @@ def resolve(source: Source) -> ResolvedScenario:
     tree_path = problems.attempt(lambda: _tree_path(source))
     tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
     inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
-    if tree is not None and faults:
-        names = _node_names(tree)
-        problems.found.extend(_unknown_nodes(source, faults, tree, names))
-        problems.found.extend(_unknown_targets(source, faults, tree, names))
+    if tree is not None:
+        problems.found.extend(target_problems(source, faults or (), tree))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
@@ -266,62 +265,6 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
             values[name] = problems.attempt(lambda n=name, k=kind: literal(source, (*place, n), k))  # type: ignore[misc]  # mypy cannot infer bound lambdas
     problems.check()
     return values
-
-
-def _unknown_nodes(
-    source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec, names: set[str]
-) -> list[Problem]:
-    """Faults that wait for a node which neither the tree nor a strategy has: they could never fire."""
-    waited: list[tuple[Place, str]] = [
-        (("faults", i, "from", "node"), f.start.node)
-        for i, f in enumerate(faults)
-        if f.start.node is not None
-    ]
-    return _strangers(source, waited, names, f"the node {{}}, which the tree {tree.name} does not have")
-
-
-def _unknown_targets(
-    source: Source, faults: tuple[ResolvedFault, ...], tree: TreeSpec, names: set[str]
-) -> list[Problem]:
-    """Faults of a node, a value or a strategy that is not there."""
-    nodes: list[tuple[Place, str]] = []
-    values: list[tuple[Place, str]] = []
-    strategies: list[tuple[Place, str]] = []
-    for i, fault in enumerate(faults):
-        named = ((fault.spec.node, nodes), (fault.spec.value, values), (fault.spec.strategy, strategies))
-        for parameter, found in named:
-            value = getattr(fault.parameters, parameter) if parameter else None
-            if parameter and value is not None:
-                found.append((("faults", i, fault.spec.name, parameter), value))
-    known = set(plugins.found(plugins.STRATEGIES))
-    return [
-        *_strangers(source, nodes, names, f"the node {{}}, which the tree {tree.name} does not have"),
-        *_strangers(
-            source, values, _value_names(tree), f"the value {{}}, which the tree {tree.name} does not have"
-        ),
-        *_strangers(source, strategies, known, "the unknown strategy {}"),
-    ]
-
-
-def _node_names(tree: TreeSpec) -> set[str]:
-    """What the nodes of a tree and of every strategy's tree are called."""
-    trees = (tree, *strategy_trees(load_strategies()).values())
-    return {node.name for each in trees for _, node in walk(each)}
-
-
-def _value_names(tree: TreeSpec) -> set[str]:
-    """What the values of a tree and of all its sub-trees are called, and of every strategy's."""
-    trees = (tree, *strategy_trees(load_strategies()).values())
-    inner = (node.tree for each in trees for _, node in walk(each) if node.tree is not None)
-    return {name for each in (*trees, *inner) for name in each.values}
-
-
-def _strangers(source: Source, named: list[tuple[Place, str]], known: set[str], got: str) -> list[Problem]:
-    return [
-        source.at(place).problem("got " + got.format(f'"{name}"') + guess(name, sorted(known)))
-        for place, name in named
-        if name not in known
-    ]
 
 
 def _check_tier(source: Source, tier: str, backend: BackendSpec) -> None:

@@ -13,9 +13,8 @@ from typing import Any
 from executive.hypotheses import Hypothesis
 from executive.telemetry.events import HypothesesEvent, Telemetry, TruthEvent, WaypointEvent
 from executive.types import PoseEstimate
-from executive.values import ANGLE, FLAG, INTEGER, LENGTH, NUMBER, ValueType
+from executive.values import ANGLE, FLAG, FORCE, INTEGER, LENGTH, NUMBER, ValueType
 
-FORCE = ValueType("force", float, "N")
 CURRENT = ValueType("current", float, "A")
 
 

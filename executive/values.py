@@ -27,6 +27,7 @@ LENGTH = ValueType("length", float, "m")
 ANGLE = ValueType("angle", float, "rad")
 DURATION = ValueType("duration", float, "s")
 SPEED = ValueType("speed", float, "m/s")
+FORCE = ValueType("force", float, "N")
 NUMBER = ValueType("number", float)
 INTEGER = ValueType("integer", int)
 FLAG = ValueType("flag", bool)
@@ -44,6 +45,7 @@ VALUE_TYPES: dict[str, ValueType[object]] = {
         ANGLE,
         DURATION,
         SPEED,
+        FORCE,
         NUMBER,
         INTEGER,
         FLAG,

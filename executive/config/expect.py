@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from executive.config.source import Source
-from executive.config.validate import Strict
+from executive.config.validate import Strict, guess, listed
+from executive.types import Reason
 from executive.units import Angle, Duration, Force, Length
 
 Name = Annotated[str, Field(min_length=1, max_length=100)]
 FormulaText = Annotated[str, Field(min_length=1, max_length=1000)]
+ENDS = ("success", "failure", "halted", *(str(r) for r in Reason if r is not Reason.DONE))
+"""How a node can end; a failure also by its reason."""
 OutcomeName = Literal["reached", "safe_hold", "help", "time_limit", "error"]
 
 
@@ -44,10 +48,53 @@ class Diagnosed(Noticed):
     as_: Annotated[Name, Field(alias="as")]
 
 
+class Band(Strict):
+    """At least one bound, both exclusive."""
+
+    @model_validator(mode="after")
+    def bounded(self) -> Self:
+        if not self.model_fields_set & {"above", "below"}:
+            text = "got no bound, expected above, below or both"
+            raise PydanticCustomError("located", "{text}", {"text": text})
+        return self
+
+
+class LengthBand(Band):
+    above: Length | None = None
+    below: Length | None = None
+
+
+class DurationBand(Band):
+    above: Duration | None = None
+    below: Duration | None = None
+
+
+def _known_end(word: str) -> str:
+    if word not in ENDS:
+        text = f"got {word}, expected {listed(ENDS)}{guess(word, ENDS)}"
+        raise PydanticCustomError("located", "{text}", {"text": text})
+    return word
+
+
+Ends = Annotated[str, AfterValidator(_known_end), Field(json_schema_extra={"enum": list(ENDS)})]
+Step = Annotated[dict[Name, Ends], Field(min_length=1, max_length=1)]
+"""A node, by its name or path, and how it ends: {localise: not_seen}."""
+
+
+class Times(Strict):
+    """How often a node may end in one way."""
+
+    of: Step
+    at_least: Annotated[int, Field(ge=0)] = 0
+    at_most: Annotated[int, Field(ge=0)] | None = None
+
+
 class Expect(Strict):
     """Every field that takes a list also takes what would be its only member."""
 
     outcome: tuple[OutcomeName, ...] = ()
+    mission_time: DurationBand | None = None
+    path: LengthBand | None = None
     final_error: Below | None = None
     driven_beyond_off_track: Below | None = None
     max_cross_track: Below | None = None
@@ -60,12 +107,16 @@ class Expect(Strict):
     recovered: tuple[Noticed, ...] = ()
     strategies_tried: tuple[Name, ...] = ()
     strategies_not_tried: tuple[Name, ...] = ()
+    in_order: tuple[Step, ...] = ()
+    never: tuple[Step, ...] = ()
+    times: tuple[Times, ...] = ()
     always: tuple[FormulaText, ...] = ()
     eventually: tuple[FormulaText, ...] = ()
     until: tuple[FormulaText, ...] = ()
     holds: tuple[FormulaText, ...] = ()
 
 
+LISTS_OF_STEPS = ("in_order", "never", "times")
 LISTS = tuple(name for name, field in Expect.model_fields.items() if field.default == ())
 
 

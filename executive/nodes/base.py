@@ -158,6 +158,11 @@ class Trace:
     last_failure: tuple[str, Outcome[object]] | None = None
     note: Callable[[str, Outcome[object]], None] = lambda path, outcome: None
 
+    def fail(self, path: str, outcome: Outcome[object]) -> None:
+        """A node has failed, and says why."""
+        self.last_failure = (path, outcome)
+        self.note(path, outcome)
+
     def terminate_entered(self) -> None:
         """Terminate every leaf that was entered and has not ended, last entered first.
 
@@ -220,9 +225,10 @@ class Leaf(Behaviour):
             return Status.RUNNING
         self.feedback_message = outcome.detail or outcome.reason.value
         if not outcome.ok:
-            self.trace.last_failure = (self.path, outcome)
+            self.trace.fail(self.path, outcome)
+            return Status.FAILURE
         self.trace.note(self.path, outcome)
-        return Status.SUCCESS if outcome.ok else Status.FAILURE
+        return Status.SUCCESS
 
     def terminate(self, new_status: Status) -> None:
         if self.trace.entered.pop(self.path, None) is not None or new_status is not Status.INVALID:

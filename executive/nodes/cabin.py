@@ -17,7 +17,7 @@ class SetCabin(ActionLeaf):
     arm = In[float](ANGLE, "lift of the arm", default=0.0)
     cabin = In[float](ANGLE, "tilt of the cabin, nose up positive", default=0.0)
 
-    outcomes = (Reason.DONE, Reason.OUT_OF_REACH, Reason.DEVICE)
+    outcomes = (Reason.DONE, Reason.OUT_OF_REACH, Reason.BLOCKED, Reason.DEVICE)
 
     def request(self) -> Action[CabinReading]:
         return self.services.devices.cabin.move(self.arm, self.cabin)
@@ -29,7 +29,7 @@ class ShowMarkers(ActionLeaf):
     pose = In[PoseEstimate](POSE, "the pose")
     arm = In[float](ANGLE, "lift of the arm, to look over what hides the markers", default=math.radians(20.0))
 
-    outcomes = (Reason.DONE, Reason.OUT_OF_REACH, Reason.DEVICE)
+    outcomes = (Reason.DONE, Reason.OUT_OF_REACH, Reason.BLOCKED, Reason.DEVICE)
 
     def request(self) -> Action[CabinReading]:
         low, high = self.services.rig.cabin.cabin_limits_rad

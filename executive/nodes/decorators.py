@@ -26,8 +26,7 @@ class _Ending(Decorator):
         """Note the failure; a child still running is halted by `Decorator.stop`."""
         outcome: Outcome[object] = Outcome(reason, detail)
         self.feedback_message = detail
-        self.trace.last_failure = (self.path, outcome)
-        self.trace.note(self.path, outcome)
+        self.trace.fail(self.path, outcome)
         return Status.FAILURE
 
     def end(self, status: Status) -> None:

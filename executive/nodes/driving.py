@@ -11,19 +11,20 @@ from executive.nodes.base import FromTree, In, InOut
 from executive.nodes.belt_watch import BeltWatch
 from executive.ports import Action
 from executive.types import Outcome, PoseEstimate, Reason, Segment, TrackReading
-from executive.values import ANGLE, NUMBER, POSE, SEGMENT
+from executive.values import ANGLE, FORCE, NUMBER, POSE, SEGMENT
 
 DRIVING_OUTCOMES: tuple[Reason, ...] = (
     Reason.DONE,
     Reason.BLOCKED,
     Reason.TILT,
+    Reason.TETHER,
     Reason.OFF_TRACK,
     Reason.DEVICE,
 )
 
 
 class DrivingLeaf(ActionLeaf):
-    """Drives the belts; stops on tilt, before the off-track margin, and when a belt does not count.
+    """Drives the belts; stops on tilt, pull of the tether, a belt that does not count, before the margin.
 
     Leaves the predicted pose behind.
     """
@@ -31,6 +32,7 @@ class DrivingLeaf(ActionLeaf):
     pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
     tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
+    tension_limit = In[float](FORCE, "stop at this pull; half of one at a snag may not be felt", default=4.0)
     sigmas = In[float](NUMBER, "standard deviations to keep from the off-track margin", default=2.0)
 
     outcomes: ClassVar[tuple[Reason, ...]] = DRIVING_OUTCOMES
@@ -48,15 +50,22 @@ class DrivingLeaf(ActionLeaf):
         return tracks.drive(planned.value.left_m, planned.value.right_m, speed)
 
     def watch(self) -> Outcome[object] | None:
-        pose = self._carry_on()
+        problem = self._problem(self._carry_on())
+        if problem is not None:
+            self.services.journal.assessment(self.services.classification.failed(problem))
+        return problem
+
+    def _problem(self, pose: PoseEstimate) -> Outcome[object] | None:
+        """Why this drive must not go on, None if it may."""
         telemetry = self.services.classification.telemetry
-        if telemetry is not None and (problem := self._belts.problem(telemetry.tracks)):
-            outcome: Outcome[object] = Outcome(Reason.DEVICE, problem)
-            self.services.journal.assessment(self.services.classification.failed(outcome))
-            return outcome
-        tilt = telemetry.tilt if telemetry else None
-        if tilt is not None and math.hypot(tilt.roll_rad, tilt.pitch_rad) > self.tilt_limit:
-            return Outcome(Reason.TILT, f"{math.degrees(math.hypot(tilt.roll_rad, tilt.pitch_rad)):.1f} deg")
+        if telemetry is not None:
+            if miscount := self._belts.problem(telemetry.tracks):
+                return Outcome(Reason.DEVICE, miscount)
+            tilt_rad = math.hypot(telemetry.tilt.roll_rad, telemetry.tilt.pitch_rad)
+            if tilt_rad > self.tilt_limit:
+                return Outcome(Reason.TILT, f"{math.degrees(tilt_rad):.1f} deg")
+            if telemetry.tether.tension_n > self.tension_limit:
+                return Outcome(Reason.TETHER, f"pulls with {telemetry.tether.tension_n:.1f} N")
         if pose.track is not None and self.segment is not None:
             worst = abs(pose.track.cross_m) + self.sigmas * pose.sigma_across_m(self.segment)
             if worst >= self.segment.off_track_m:

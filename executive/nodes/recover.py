@@ -113,8 +113,7 @@ class Recover(Composite):
         detail = f"{why}; {failure.reason}: {failure.detail}" if failure else why
         outcome: Outcome[object] = Outcome(Reason.NO_STRATEGY, detail)
         self.feedback_message = detail
-        self.trace.last_failure = (self.path, outcome)
-        self.trace.note(self.path, outcome)
+        self.trace.fail(self.path, outcome)
         return Status.FAILURE
 
     def after_strategy(self) -> Status:

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from executive import plugins
 from executive.errors import ConfigError
 from executive.fault_entries import RESERVED
-from executive.fault_onsets import Sightings
 from executive.faults import FaultSpec
 from executive.pool import Strategy
 from executive.scenario import ResolvedScenario
@@ -28,23 +27,16 @@ SOMEWHERE = {"progress": "25 %"}
 
 @dataclass(frozen=True)
 class Base:
-    """A scenario that was run: at which count, of all nodes called alike, each node was first entered."""
+    """A scenario that was run, and the nodes that were entered in it."""
 
     data: Data
-    entered: dict[str, int]
+    entered: frozenset[str]
 
     @classmethod
     def of(cls, data: Data, history: History, universe: Universe) -> Base:
         """Of a scenario and the record of its run."""
-        sightings, entered = Sightings(), dict[str, int]()
-        for _, change in history.all(events.NodeChange):
-            key = ("node", short(change.path))
-            before = sightings.entered[key]
-            sightings.hear(change)
-            name = universe.places.get(change.path)
-            if name is not None and sightings.entered[key] > before:
-                entered.setdefault(name, sightings.entered[key])
-        return cls(data, entered)
+        paths = {change.path for _, change in history.all(events.NodeChange) if change.status != "invalid"}
+        return cls(data, frozenset(universe.places[path] for path in paths if path in universe.places))
 
     def with_fault(self, fault: Fault, start: Data, lasts: str | None) -> Data:
         """The scenario with one more fault."""
@@ -60,11 +52,6 @@ class Base:
         return data
 
 
-def short(path: str) -> str:
-    """What a trigger calls a node."""
-    return path.rsplit("/", 1)[-1].split("#")[0]
-
-
 def candidates(hole: Item, bases: list[Base], strategies: dict[str, Strategy]) -> Iterator[Data]:
     """Scenarios that may fill a hole, the likeliest first; simple bases before those with many faults."""
     bases = sorted(bases, key=lambda base: len(base.data.get("faults", ())))
@@ -75,10 +62,9 @@ def candidates(hole: Item, bases: list[Base], strategies: dict[str, Strategy]) -
                     yield bases[0].with_fault(fault, SOMEWHERE, lasts)
             continue
         reaching = [base for base in bases if hole.name in base.entered]
-        for fault in at_node(hole.word, short(hole.name)):
+        for fault in at_node(hole.word, hole.name):
             for base in reaching[:2] if _installed(fault) else ():
-                count = base.entered[hole.name]
-                yield base.with_fault(fault, {"node": short(hole.name), "count": count}, lasts)
+                yield base.with_fault(fault, {"node": hole.name}, lasts)
 
 
 def resolved_or_none(data: Data) -> ResolvedScenario | None:

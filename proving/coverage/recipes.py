@@ -8,6 +8,7 @@ from typing import Any
 from executive import plugins
 from executive.faults import FaultSpec
 from executive.pool import Strategy
+from executive.types import Reason
 from proving.coverage.items import Item
 
 Fault = dict[str, Any]
@@ -55,6 +56,8 @@ def at_node(word: str, node: str) -> Iterator[Fault]:
     yield from RECIPES.get(word, ())
     if word in ("success", "failure"):
         yield {"node_forced": {"node": node, "status": word}}
+    elif word in {str(reason) for reason in Reason}:
+        yield {"node_forced": {"node": node, "status": "failure", "reason": word}}
 
 
 def for_strategy(strategy: Strategy) -> Iterator[Fault]:

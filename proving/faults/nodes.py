@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from executive.errors import NodeRaised
 from executive.faults import Cue, FaultSpec, TreeParts
+from executive.types import Outcome, Reason
 from executive.units import Duration
 from proving.faults.parameters import Parameters
 from proving.faults.reticked import NodeFault, Reticked, root_of
@@ -19,9 +21,12 @@ At = Literal["before", "after"]
 
 
 class NodeName(Parameters):
-    """Which node; all of this name are meant."""
+    """Which node; all that are called so are meant."""
 
-    node: Annotated[str, Field(min_length=1, description="name of the node, as drawings show it")]
+    node: Annotated[
+        str,
+        Field(min_length=1, description="its name, or as much of its path as tells it: back_off/localise#2"),
+    ]
 
 
 class Forcing(NodeName):
@@ -33,16 +38,39 @@ class Forcing(NodeName):
     at: Annotated[
         At, Field(description="before: the node is not ticked at all; after: ticked, its status replaced")
     ] = "after"
+    reason: Annotated[Reason | None, Field(description="what a forced failure says of itself")] = None
+    times: Annotated[
+        int | None, Field(ge=1, description="how many of its ticks; all, where it is not said")
+    ] = None
+
+    @model_validator(mode="after")
+    def only_failures_have_reasons(self) -> Self:
+        if self.reason is not None and (self.status != "failure" or self.reason is Reason.DONE):
+            text = f"got the reason {self.reason} of a {self.status}, expected one of a failure"
+            raise PydanticCustomError("located", "{text}", {"text": text})
+        return self
 
 
 class NodeForced(NodeFault):
-    """A node shows a status that is not its own. One forced to end is halted if it is under way."""
+    """A node shows a status that is not its own. One forced to end is halted if it is under way.
+
+    Failing for a `reason` it says so as if the reason were its own, so that the pool answers it.
+    """
 
     def __init__(self, parameters: Forcing) -> None:
         super().__init__(parameters.node)
         self._status, self._at = Status[parameters.status.upper()], parameters.at
+        self._reason, self._left = parameters.reason, parameters.times
+
+    def wrap_tree(self, tree: TreeParts, cue: Cue) -> None:
+        self._fail = tree.fail
+        super().wrap_tree(tree, cue)
 
     def tick(self, node: Reticked, cue: Cue) -> Iterator[Behaviour]:
+        if self._left == 0:
+            yield from node.run()
+            return
+        self._left = None if self._left is None else self._left - 1
         if self._at == "after":
             yield from node.run()
         if self._at == "before" or self._status is not Status.RUNNING:
@@ -52,6 +80,8 @@ class NodeForced(NodeFault):
         else:
             self.altered += node.own is not Status.RUNNING
         node.show(self._status)
+        if self._reason is not None:
+            self._fail(node.path, Outcome(self._reason, "forced"))
 
 
 class NodeHangs(NodeFault):

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from executive.addresses import means
 from executive.faults import Cue, TreeParts
 from proving.faults.altered import Counted
 
@@ -49,14 +50,14 @@ class Reticked:
 
 
 class NodeFault(Counted):
-    """What becomes of the ticks of every node of one name. Subclasses write `tick`."""
+    """What becomes of the ticks of every node that an address means. Subclasses write `tick`."""
 
     def __init__(self, node: str) -> None:
         self._node = node
 
     def wrap_tree(self, tree: TreeParts, cue: Cue) -> None:
         for path, node in tree.nodes.items():
-            if name_of(path) == self._node:
+            if means(self._node, path):
                 self.replace(Reticked(path, node), cue)
 
     def replace(self, node: Reticked, cue: Cue) -> None:
@@ -75,11 +76,6 @@ class NodeFault(Counted):
 
     def tick(self, node: Reticked, cue: Cue) -> Iterator[Behaviour]:
         raise TypeError(f"{type(self).__name__} does nothing to a tick")
-
-
-def name_of(path: str) -> str:
-    """What a node is called: the last part of its path, without the number that tells it from its like."""
-    return path.rsplit("/", 1)[-1].split("#")[0]
 
 
 def root_of(tree: TreeParts) -> tuple[str, Behaviour]:

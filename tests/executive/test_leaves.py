@@ -21,7 +21,17 @@ from executive.prediction import quat_from_heading_tilt
 from executive.rig import RigCalibration
 from executive.telemetry.recorder import Recorder
 from executive.testing import FakeBackend, FakeWorld, OverheadLocalizer
-from executive.types import Outcome, Point, PoseEstimate, Quality, Reason, Segment, Source, TiltReading
+from executive.types import (
+    Outcome,
+    Point,
+    PoseEstimate,
+    Quality,
+    Reason,
+    Segment,
+    Source,
+    TetherReading,
+    TiltReading,
+)
 
 SEGMENT = Segment(Point(2.0, 0.0), Point(3.0, 0.0), 0.03, 0.25, 0.03)
 ENDS_HERE = replace(SEGMENT, start=Point(1.0, 0.0), end=Point(2.0, 0.0))
@@ -121,6 +131,10 @@ def tilted(bench: Bench) -> None:
     bench.backend.devices.inclinometer.read = lambda: TiltReading(bench.backend.clock.now_s, 0.6, 0.0)  # type: ignore[method-assign]
 
 
+def held_back(bench: Bench) -> None:
+    bench.backend.devices.tether.read = lambda: TetherReading(bench.backend.clock.now_s, 5.0, 6.0)  # type: ignore[method-assign]
+
+
 def believed_at(y_m: float, heading_rad: float = 0.0) -> Setup:
     def setup(bench: Bench) -> None:
         bench.classification = bench.known(y_m, heading_rad)
@@ -187,10 +201,12 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("point_head", Reason.DEVICE, ends("head", "point", Reason.DEVICE), {}),
     ("set_cabin", Reason.DONE, nothing, {"arm": 0.2}),
     ("set_cabin", Reason.OUT_OF_REACH, nothing, {"arm": 3.0}),
+    ("set_cabin", Reason.BLOCKED, ends("cabin", "move", Reason.BLOCKED), {}),
     ("set_cabin", Reason.DEVICE, ends("cabin", "move", Reason.DEVICE), {}),
     ("set_leg", Reason.DONE, nothing, {"to": 0.05}),
     ("show_markers", Reason.DONE, nothing, {}),
     ("show_markers", Reason.OUT_OF_REACH, nothing, {"arm": 3.0}),
+    ("show_markers", Reason.BLOCKED, ends("cabin", "move", Reason.BLOCKED), {}),
     ("show_markers", Reason.DEVICE, ends("cabin", "move", Reason.DEVICE), {}),
     ("start_here", Reason.DONE, nothing, {"route": (SEGMENT,)}),
     ("start_here", Reason.OFF_TRACK, believed_at(0.6), {"route": (SEGMENT,)}),
@@ -207,6 +223,7 @@ for _name, _values in DRIVES.items():
         (_name, Reason.BLOCKED, ends("tracks", "drive", Reason.BLOCKED), _values),
         (_name, Reason.DEVICE, ends("tracks", "drive", Reason.DEVICE), _values),
         (_name, Reason.TILT, tilted, _values),
+        (_name, Reason.TETHER, held_back, _values),
     ]
     if _name != "drive_leg":  # which refuses before it drives
         CASES.append((_name, Reason.OFF_TRACK, believed_at(0.3), _values))
