@@ -24,7 +24,7 @@ class Corrupting(Parameters):
         Literal["nan", "none", "stale", "scaled"],
         Field(description="no number; unset; as it was at the onset; every number in it scaled"),
     ] = "nan"
-    factor: Annotated[Fraction, Field(ge=-10, le=10, description="of scaled values")] = 1.5
+    factor: Annotated[Fraction, Field(ge=-1000, le=1000, description="of scaled values")] = 1.5
 
 
 class ValueCorrupted(NodeFault):
