@@ -144,7 +144,8 @@ class Classification:
             turned = abs(self._since.turn_rad) + LEAST_BLOCKED_TURN_RAD
             along_m = abs(self._since.advance_m)
             self.motion = prediction.doubt(self.motion, along_m, along_m * math.sin(turned), turned)
-        self._weigh(Evidence(self._clock.now_s, {Channel.FAILURE: (FAILURE_CODES[outcome.reason], 0.0)}))
+        reason = {Channel.FAILURE: (FAILURE_CODES[outcome.reason], 0.0)}
+        self._weigh(Evidence(self._clock.now_s, reason | self._pull()))
         return self.assess(self.predicted())
 
     def doubt(self, along_m: float, across_m: float, heading_rad: float) -> None:
@@ -209,9 +210,11 @@ class Classification:
             channels[Channel.ADVANCE_RATIO] = (self.observed_advance_ratio, sigma_along / abs(advance))
         if self._since.currents and self._current_baseline_a:
             channels[Channel.CURRENT_RATIO] = (self._mean_current() / self._current_baseline_a, 0.0)
-        if self.telemetry is not None:
-            channels[Channel.TETHER] = (self.telemetry.tether.tension_n, 0.0)
-        return Evidence(self._clock.now_s, channels)
+        return Evidence(self._clock.now_s, channels | self._pull())
+
+    def _pull(self) -> dict[Channel, tuple[float, float]]:
+        """What the tether says, once it has been read."""
+        return {Channel.TETHER: (self.telemetry.tether.tension_n, 0.0)} if self.telemetry else {}
 
     def _mean_current(self) -> float:
         return sum(self._since.currents) / len(self._since.currents)
