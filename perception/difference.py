@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,10 +90,10 @@ def difference(
     flat = frames.reshape(len(frames), -1)
     images = (W.astype(np.float32) @ flat).reshape(markers, *frames.shape[1:])
     reference = frames[[mask == 0 for mask in leds]].mean(axis=0)
-    relative = np.sqrt(np.clip(reference / max(float(reference.mean()), 1.0), 0.2, 4.0))
+    relative = relative_noise(reference)
     frame_noise = max(_frame_noise(frames, leds, relative), 0.3 * noise_counts)
     expected = frame_noise * np.linalg.norm(W, axis=1)
-    scale = [_noise(image / relative, float(e)) for image, e in zip(images, expected, strict=True)]
+    scale = [shown_noise(image / relative, float(e)) for image, e in zip(images, expected, strict=True)]
     sigma = np.array(scale, dtype=np.float32)[:, None, None] * relative
     pairs = min((leds.count(1 << m) for m in range(markers) if 1 << m in leds), default=0)
     return Difference(images, sigma.astype(np.float32), reference, pairs)
@@ -106,13 +107,19 @@ def _frame_noise(frames: NDArray[np.float32], leds: Sequence[int], relative: NDA
     return _spread((frames[dark[0]] - frames[dark[-1]]) / relative) / math.sqrt(2.0)
 
 
-def _noise(image: NDArray[np.float32], expected: float) -> float:
+def relative_noise(reference: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
+    """Noise of each pixel of a window relative to its mean: shot noise goes with the root of brightness."""
+    bright = np.clip(reference / max(float(reference.mean()), 1.0), 0.2, 4.0)
+    return np.asarray(np.sqrt(bright), dtype=np.float32)
+
+
+def shown_noise(image: NDArray[np.floating[Any]], expected: float) -> float:
     """The expected noise of a difference image, or what it shows where that is clearly more [counts]."""
     shown = _spread(image)
     return shown if shown > _LEAK_FACTOR * expected else max(expected, 1e-6)
 
 
-def _spread(image: NDArray[np.float32]) -> float:
+def _spread(image: NDArray[np.floating[Any]]) -> float:
     """Standard deviation without what lies beyond 4 of them (markers, hot pixels).
 
     Not from quantiles: counts are whole numbers, a quantile of their difference is off by up to half of one.

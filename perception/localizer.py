@@ -23,46 +23,40 @@ from executive.types import (
     Shot,
     Source,
     Vec2,
-    Window,
 )
 from executive.types import View as Seen
 from perception.body import plc_in_body
 from perception.chain import Chain, body_transform
-from perception.difference import led_sequence
-from perception.exposure import SNR_WANTED, View, filter_snr_per_pair, pairs_needed, view_of
+from perception.exposure import View, view_of
 from perception.follow_up import pointing_at
+from perception.joint import JointFix
 from perception.localisation import Localisation, empty
-from perception.look import Look, look_at
-from perception.plausibility import Choice, Rejection, choose
+from perception.plausibility import Choice, Rejection
 from perception.pose import Fix
 from perception.prediction import Expectation, expect
-from perception.psf import marker_spread
-from perception.roi import full_windows, predicted_windows
 from perception.rotation import quat_from_matrix
 from perception.routine import Routine, Steps, wait_for
+from perception.sight import Eyes, Scope, Sight
 from perception.trend import CADENCE_S, LEDS, coarse_pose, window_margin_px
 
 _REPOINT_RAD = math.radians(1.0)
-_MOST_PAIRS = {Quality.PRECISE: 64, Quality.FAR: 400}
-_PIXEL_BUDGET = 32_000_000  # per camera and shot: frames x window, for memory and time
 
 
 @dataclass(frozen=True)
 class Try:
-    """One rung of the search: how wide the windows (None: full frames), more pairs, where to look besides."""
+    """One rung of the search: how wide to look, and where to besides the prediction."""
 
-    widen: float | None
-    pairs_factor: float = 1.0
+    scope: Scope
     pan_offset_rad: float = 0.0
     tilt_offset_rad: float = 0.0
 
 
 _STEP_RAD = math.radians(8.0)  # of the search pattern: a third of the field of view
 _SEARCH = tuple(
-    Try(None, 1.0, pan * _STEP_RAD, tilt * _STEP_RAD)
+    Try(Scope(None), pan * _STEP_RAD, tilt * _STEP_RAD)
     for pan, tilt in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1))
 )
-LADDER = (Try(1.0), Try(2.5, 2.0), Try(None), *_SEARCH)
+LADDER = (Try(Scope(1.0)), Try(Scope(2.5, 2.0)), Try(Scope(None)), *_SEARCH)
 FULL_FRAMES = 2  # the rung from which on windows hide nothing
 
 
@@ -72,6 +66,7 @@ class LedStereoLocalizer:
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
         self._devices, self._rig, self._clock = devices, rig, clock
         self._chain = Chain.of(rig)
+        self._eyes = Eyes(devices, rig, clock)
         self.last: Localisation | None = None
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
@@ -107,22 +102,22 @@ class LedStereoLocalizer:
             if turned is not None:
                 return turned
             expectation = self._expectation(request.predicted)
-            shot = self._shot(expectation, LADDER[rung], request.quality, deadline)
-            if shot is None:
+            sight = yield from self._eyes.look(expectation, LADDER[rung].scope, request.quality, deadline)
+            if sight is None:
                 break
-            taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline)
-            if taken.value is None or not taken.ok:
-                return Outcome(taken.reason, f"cameras: {taken.detail}")
-            look, choice = self._evaluate(expectation, taken.value, request.quality)
-            problem = self._judge(expectation, look, choice)
-            if problem is None and isinstance(choice, Choice):
-                return Outcome(Reason.DONE, value=self._estimate(taken.value, choice))
+            if isinstance(sight, Outcome):
+                return Outcome(sight.reason, sight.detail)
+            answer = sight.answer
+            self._keep(request.quality, sight)
+            problem = self._judge(expectation, sight)
+            if problem is None and not isinstance(answer, Rejection):
+                return Outcome(Reason.DONE, _cost(sight), self._estimate(sight.data, answer))
             reason, why = problem or (Reason.NOT_SEEN, "")
-            cut_off = isinstance(choice, Rejection) and rung < FULL_FRAMES  # a window may cut markers off
+            cut_off = isinstance(answer, Rejection) and rung < FULL_FRAMES  # a window may cut markers off
             if reason is Reason.NOT_SEEN or (reason is Reason.IMPLAUSIBLE and cut_off):
                 rung += 1
             elif retaken:
-                value = self._estimate(taken.value, choice) if isinstance(choice, Choice) else None
+                value = None if isinstance(answer, Rejection) else self._estimate(sight.data, answer)
                 return Outcome(reason, why, value)
             else:
                 retaken = True
@@ -158,57 +153,15 @@ class LedStereoLocalizer:
             (tilt.roll_rad, tilt.pitch_rad),
         )
 
-    def _shot(self, expectation: Expectation, rung: Try, quality: Quality, deadline: float) -> Shot | None:
-        """The exposure for this rung, within memory and time; None without time for one pair."""
-        view = view_of(self._chain, expectation.state)
-        windows = self._windows(expectation, rung, marker_spread(self._rig, view.range_m).radius_px + 8.0)
-        markers = len(self._rig.markers.positions_plc_m)
-        pixels = max(w.width * w.height for w in windows)
-        cadence = Shot(leds=(0,)).cadence_s
-        wanted = pairs_needed(filter_snr_per_pair(self._rig, view)) * rung.pairs_factor
-        by_memory = (_PIXEL_BUDGET // pixels - 1) // (markers + 1)
-        by_time = int((deadline - self._clock.now_s) / cadence - 1) // (markers + 1)
-        pairs = int(min(wanted, _MOST_PAIRS[quality], max(by_memory, 1), by_time))
-        if pairs < 1:
-            return None
-        return Shot(led_sequence(markers, pairs), windows, cadence)
-
-    def _windows(self, expectation: Expectation, rung: Try, margin_px: float) -> tuple[Window, Window]:
-        found = None
-        if rung.widen is not None:
-            found = predicted_windows(
-                self._chain, expectation.state, expectation.covariance, margin_px, rung.widen
-            )
-        return found or full_windows(self._chain)
-
-    def _evaluate(
-        self, expectation: Expectation, data: Images | Centres, quality: Quality
-    ) -> tuple[Look, Choice | Rejection]:
-        """Detect and choose; keeps the work product in `last`."""
-        state = replace(expectation.state, head_rad=(data.head.pan_rad, data.head.tilt_rad))
-        look = look_at(self._rig, data, view_of(self._chain, state).range_m)
-        tilt = self._devices.inclinometer.read()
-        choice = choose(
-            self._chain,
-            look.candidates,
-            state.head_rad,
-            state.joints_rad,
-            (tilt.roll_rad, tilt.pitch_rad),
-            expectation.prior,
-        )
-        self._keep(data, quality, look, choice)
-        return look, choice
-
-    def _judge(
-        self, expectation: Expectation, look: Look, choice: Choice | Rejection
-    ) -> tuple[Reason, str] | None:
-        """What speaks against this look; None if nothing does."""
+    def _judge(self, expectation: Expectation, sight: Sight) -> tuple[Reason, str] | None:
+        """What speaks against this sight; None if nothing does."""
         problem: tuple[Reason, str] | None = None
-        if look.problem:
-            problem = Reason.UNSTABLE_IMAGES, look.problem
-        elif isinstance(choice, Rejection):
-            problem = (Reason.NOT_SEEN if choice.seen < 2 else Reason.IMPLAUSIBLE), choice.why
-        elif misfit := expectation.misfit(choice.fix):
+        answer = sight.answer
+        if sight.problem:
+            problem = Reason.UNSTABLE_IMAGES, sight.problem
+        elif isinstance(answer, Rejection):
+            problem = (Reason.NOT_SEEN if answer.seen < 2 else Reason.IMPLAUSIBLE), answer.why
+        elif misfit := expectation.misfit(answer.fix):
             problem = Reason.IMPLAUSIBLE, misfit
         if problem is not None and self.last is not None:
             self.last = replace(self.last, why=problem[1])
@@ -216,32 +169,33 @@ class LedStereoLocalizer:
 
     def _not_seen(self, request: LocaliseRequest, why: str) -> Outcome[PoseEstimate]:
         """POOR_VIEW where the prediction explains that nothing was seen, NOT_SEEN otherwise."""
-        view = view_of(self._chain, self._expectation(request.predicted).state)
-        pairs, most = pairs_needed(filter_snr_per_pair(self._rig, view)), _MOST_PAIRS[request.quality]
+        expectation = self._expectation(request.predicted)
+        view = view_of(self._chain, expectation.state)
+        pairs, most = self._eyes.most_pairs(expectation, request.quality)
         if view.cosine <= 0 or pairs > most:
             return Outcome(Reason.POOR_VIEW, f"{why}; {_describe(view, pairs)}, at most {most}")
         return Outcome(Reason.NOT_SEEN, f"{why}; {_describe(view, pairs)}")
 
-    def _estimate(self, data: Images | Centres, choice: Choice) -> PoseEstimate:
-        body = choice.fix.state.site_body
+    def _estimate(self, data: Images | Centres, answer: Choice | JointFix) -> PoseEstimate:
+        body = answer.fix.state.site_body
         x, y, z = body.position_m.tolist()
         return PoseEstimate(
             time_s=data.time_s,
             position_site_m=(x, y, z),
             quat_site_body=quat_from_matrix(body.rotation),
-            covariance=choice.fix.covariance,
+            covariance=answer.fix.covariance,
             source=Source.MARKERS,
-            markers=len(choice.points),
+            markers=answer.markers,
         )
 
-    def _keep(self, data: Images | Centres, quality: Quality, look: Look, choice: Choice | Rejection) -> None:
-        blank = empty(data.time_s, quality, len(self._chain.markers_plc_m), data, data.shot.leds.count(1), "")
-        self.last = replace(blank, reference=look.reference, detected_px=look.strongest_px)
-        if isinstance(choice, Choice):
-            fix: Fix = choice.fix
+    def _keep(self, quality: Quality, sight: Sight) -> None:
+        data, answer = sight.data, sight.answer
+        blank = empty(data.time_s, quality, len(self._chain.markers_plc_m), data, sight.pairs, "")
+        self.last = replace(blank, reference=sight.reference, detected_px=sight.detected_px)
+        if not isinstance(answer, Rejection):
+            fix: Fix = answer.fix
             self.last = replace(
                 self.last,
-                detected_px=choice.sighting.uv_px,
                 reprojected_px=fix.reprojected_px,
                 residual_px=fix.residual_px,
                 chi2=fix.chi2,
@@ -252,12 +206,12 @@ class LedStereoLocalizer:
 
     def _tendency(self, request: LocaliseRequest, deadline: float) -> Steps[Outcome[PoseEstimate]]:
         """Two frames, fragments, a coarse pose."""
-        turned = yield from self._turn_head(request, Try(1.0), deadline)
+        turned = yield from self._turn_head(request, Try(Scope(1.0)), deadline)
         if turned is not None:
             return turned
         expectation = self._expectation(request.predicted)
         range_m = view_of(self._chain, expectation.state).range_m
-        windows = self._windows(expectation, Try(1.0), window_margin_px(self._rig, range_m))
+        windows = self._eyes.windows(expectation, 1.0, window_margin_px(self._rig, range_m))
         shot = Shot(LEDS, windows, CADENCE_S)
         start_s = self._clock.now_s
         taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline)
@@ -271,9 +225,15 @@ class LedStereoLocalizer:
         return Outcome(Reason.NOT_SEEN, why) if pose is None else Outcome(Reason.DONE, value=pose)
 
 
+def _cost(sight: Sight) -> str:
+    took_s = sight.frames * sight.data.shot.cadence_s
+    note = f"; {sight.answer.note}" if isinstance(sight.answer, JointFix) else ""
+    return f"{sight.pairs} pairs, {sight.frames} frames in {took_s:.0f} s{note}"
+
+
 def _describe(view: View, pairs: float) -> str:
     angle = math.degrees(math.acos(max(-1.0, min(1.0, view.cosine))))
     return (
         f"expected at {view.range_m:.1f} m, {angle:.0f} deg off the plate's normal, "
-        f"{pairs:.0f} pairs for an SNR of {SNR_WANTED:g}"
+        f"{pairs:.0f} pairs to see it"
     )

@@ -55,6 +55,15 @@ class Choice:
     sighting: Sighting
     sets_tried: int
 
+    @property
+    def markers(self) -> int:
+        return len(self.points)
+
+    @property
+    def detected_px(self) -> Array:
+        """Centres (2, n, 2) that entered the pose, NaN where none."""
+        return self.sighting.uv_px
+
 
 @dataclass(frozen=True)
 class Rejection:
@@ -181,7 +190,7 @@ def _try(
         return None
     for start in _starts(chain, points, sighting, prior):
         fix = estimate(chain, sighting, start, measured_prior)
-        if fix.chi2 <= chi2_limit(fix.dof, _GATE) and fix.converged and _faces_cameras(chain, fix):
+        if fix.chi2 <= chi2_limit(fix.dof, _GATE) and fix.converged and faces_cameras(chain, fix):
             return Choice(tuple(points), fix, sighting, tried)
     return None
 
@@ -234,7 +243,7 @@ def _upright_guess(
     return Transform(rotation, (site - in_body @ rotation.T).mean(axis=0))
 
 
-def _faces_cameras(chain: Chain, fix: Fix) -> bool:
+def faces_cameras(chain: Chain, fix: Fix) -> bool:
     """Whether the marker plane shows its lit side to the head: a mirrored assignment shows its back."""
     plc = chain.site_plc(fix.state)
     mast = np.array([0.0, 0.0, chain.rig.head.mast_height_m])

@@ -104,7 +104,7 @@ def guess_body(chain: Chain, points_ih_m: Array, sighting: Sighting, markers: li
 def estimate(chain: Chain, sighting: Sighting, start: Transform, prior: Prior | None = None) -> Fix:
     """Weighted least squares over the chain from `start`; ValueError on wrong shapes or too few marks."""
     weights, seen = _whitening(chain, sighting)
-    readings = _Readings.of(chain, sighting, prior)
+    readings = Readings.of(chain, sighting, prior)
     dof = 2 * int(seen.sum()) + readings.extra_rows - 6
     if dof < 0:
         raise ValueError(f"got {int(seen.sum())} marker images, expected enough to fix 6 degrees of freedom")
@@ -142,7 +142,7 @@ def _whitening(chain: Chain, sighting: Sighting) -> tuple[Array, NDArray[np.bool
 
 
 @dataclass(frozen=True, eq=False)
-class _Readings:
+class Readings:
     """Everything measured besides pixels: encoders, inclinometers, the prediction."""
 
     encoder: Array
@@ -153,7 +153,7 @@ class _Readings:
     prior_weight: Array | None
 
     @classmethod
-    def of(cls, chain: Chain, sighting: Sighting, prior: Prior | None) -> _Readings:
+    def of(cls, chain: Chain, sighting: Sighting, prior: Prior | None) -> Readings:
         sigma_tilt = chain.rig.rover.inclinometer_sigma_rad
         return cls(
             encoder=np.array([*sighting.head_rad, *sighting.joints_rad]),
@@ -198,7 +198,7 @@ def _normal_equations(
     sighting: Sighting,
     weights: Array,
     seen: NDArray[np.bool_],
-    readings: _Readings,
+    readings: Readings,
 ) -> tuple[Array, Array, float]:
     """Information matrix, right-hand side and chi-square at a state (eqs. 10, 11)."""
     uv, J = chain.project(state)

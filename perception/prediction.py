@@ -19,6 +19,7 @@ _TERRAIN_TILT_SIGMA_RAD = math.radians(1.0)
 _FLOOR = np.diag([1e-4**2] * 3 + [1e-4**2] * 3)
 _PLANAR = [0, 1, 5]  # x, y, heading: what the gate looks at
 _GATE = 1 - 1e-6
+_NOTHING_KNOWN = 1e3  # m and rad
 _WIDE_POSITION_M = 0.5
 _WIDE_HEADING_RAD = math.radians(45.0)
 
@@ -35,22 +36,34 @@ class Expectation:
         return Prior(self.state.site_body, self.covariance)
 
     @property
+    def surface(self) -> Prior:
+        """The height of the ground alone, all that a fix may take from what it is to be held against."""
+        covariance = np.diag(np.full(6, _NOTHING_KNOWN**2))
+        covariance[2, 2] = self.covariance[2, 2]
+        return Prior(self.state.site_body, covariance)
+
+    @property
     def wide(self) -> bool:
         """Whether the prediction says too little to gate a fix with."""
         position = math.sqrt(float(np.linalg.eigvalsh(self.covariance[:2, :2])[-1]))
         return position > _WIDE_POSITION_M or math.sqrt(self.covariance[5, 5]) > _WIDE_HEADING_RAD
 
+    def distance2(self, body: Transform) -> float:
+        """Squared distance of a body from here in the ground's plane and heading, in sigmas."""
+        off = self._off(body)
+        return float(off @ np.linalg.solve(self.covariance[np.ix_(_PLANAR, _PLANAR)], off))
+
+    def _off(self, body: Transform) -> Array:
+        """x, y [m] and heading [rad] of a body off the expected ones."""
+        here = self.state.site_body
+        turn = log_map(body.rotation @ here.rotation.T)
+        return np.concatenate([body.position_m - here.position_m, turn])[_PLANAR]
+
     def misfit(self, fix: Fix) -> str:
         """Why a fix is too far from the prediction to be believed; empty if it is not."""
         if self.wide:
             return ""
-        body = fix.state.site_body
-        off = np.concatenate(
-            [
-                body.position_m - self.state.site_body.position_m,
-                log_map(body.rotation @ self.state.site_body.rotation.T),
-            ]
-        )[_PLANAR]
+        off = self._off(fix.state.site_body)
         P = (self.covariance + fix.covariance)[np.ix_(_PLANAR, _PLANAR)]
         distance = float(off @ np.linalg.solve(P, off))
         if distance <= chi2_limit(len(_PLANAR), _GATE):

@@ -62,6 +62,11 @@ class Spread:
         return np.outer(self.line(), self.line())
 
     @property
+    def width_px(self) -> float:
+        """Standard deviation of the light along one axis, pixels included."""
+        return math.sqrt(self.sigma_px**2 + (self.box_px**2 + 1) / 12)
+
+    @property
     def peak(self) -> float:
         """Share of the light in the brightest pixel, the marker centred on it."""
         return float(self.profile(np.zeros(1))[0] ** 2)

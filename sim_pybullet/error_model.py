@@ -3,14 +3,19 @@
 The centre's error is the Cramér-Rao bound of the marker's own spread times a measured factor; whether it is
 found at all is a measured probability. `benchmarks/error_model.py` prints both from simulated images run
 through the detector of the perception package (windows of 96 px, false-alarm rate 1e-3 a window).
+
+In a coded shot (several LEDs on at once) the markers are not found one by one but all together or not at
+all; `benchmarks/perception.py` prints how often, and how far above the bound their pose is.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtr
 
 from sim_pybullet.leds import Spot
 from sim_pybullet.radiometry import Exposure, line_spread, spread_reach_px
@@ -28,6 +33,8 @@ MEASURED = (
     (15.0, 1.00, 1.00),
     (100.0, 1.00, 1.00),
 )
+JOINT_THRESHOLD = 5.8  # joint SNR above which a coded shot shows the rover; noise adds 1 to it
+JOINT_EXCESS = 1.05  # error over bound of what it shows
 FLOOR_PX = 0.01  # what the detector adds for the lens calibration's own error
 
 
@@ -68,6 +75,12 @@ def centre_error(
         above * bound_v,
         math.hypot(math.sqrt(bound_u * bound_v), FLOOR_PX),
     )
+
+
+def joint_chance(errors: Sequence[CentreError]) -> float:
+    """Chance that a coded shot shows all markers at once, from one camera; the other sees the same."""
+    joint_snr = math.sqrt(2 * sum(error.snr**2 for error in errors))
+    return float(ndtr(joint_snr - JOINT_THRESHOLD))
 
 
 def _line(spot: Spot, centre_px: float) -> tuple[float, float]:

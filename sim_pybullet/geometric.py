@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Shot, Window
-from sim_pybullet.error_model import centre_error
+from sim_pybullet.error_model import JOINT_EXCESS, CentreError, centre_error, joint_chance
 from sim_pybullet.exposing import full_windows
 from sim_pybullet.leds import MarkerOptics, Spot
 from sim_pybullet.projection import View, scene_views
@@ -23,7 +23,8 @@ _ROVER_MIDDLE_BODY_M = np.array([0.0, 0.0, 0.065])
 class CentreDeveloper:
     """Answers a shot with `Centres`.
 
-    A marker that is hidden, dead, outside the window or not found by chance is NaN. A shot in which no LED
+    A marker that is hidden, dead, outside the window or not found by chance is NaN; in a coded shot chance
+    finds all or none. A shot in which no LED
     is lit is one for motion fragments: it answers with the rover's projected middle, the mean over its
     frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN elsewhere.
     """
@@ -54,20 +55,29 @@ class CentreDeveloper:
         view = scene_views(self._rig, scene)[camera]
         exposure = self._exposure.under(scene.seeing.light + view.lens.veil)
         lost = exposure.ground_e >= exposure.full_well_e or not steady(scenes, view)
-        spots = self._brightest(scene, view, window)
+        spots = self._as_wired(scene, self._brightest(scene, view, window))
+        coded = any(leds & (leds - 1) for leds in shot.leds)
+        errors = [_error(shot, index, spot, exposure, coded) for index, spot in enumerate(spots)]
+        together = joint_chance(errors) if coded else None
         found = {}
-        dark = shot.leds.count(0)
-        for index in range(len(spots)):
-            led = scene.seeing.wiring[index]
-            spot = replace(spots[led], electrons=0.0) if scene.seeing.always_lit >> led & 1 else spots[led]
-            lit = sum(leds >> index & 1 for leds in shot.leds)
-            error = centre_error(spot, exposure, lit, dark)
+        luck = None
+        for index, (spot, error) in enumerate(zip(spots, errors, strict=True)):
             # Drawn for every marker, so that one that vanishes does not change the others' luck.
             chance, noise = self._rng.uniform(), self._rng.standard_normal(2)
-            if not lost and chance < error.found and _within(spot, window):
+            luck = chance if luck is None or together is None else luck
+            shows = error.snr > 0 and luck < (error.found if together is None else together)
+            if shows and not lost and _within(spot, window):
                 centre = np.array([spot.u_px, spot.v_px]) + noise * (error.sigma_u_px, error.sigma_v_px)
                 found[index] = (centre, error.reported_px)
         return found
+
+    def _as_wired(self, scene: SceneState, spots: list[Spot]) -> list[Spot]:
+        """The spots in the order in which the sequencer means to light them; one always lit shows nothing."""
+        dark = scene.seeing.always_lit
+        return [
+            replace(spots[led], electrons=0.0) if dark >> led & 1 else spots[led]
+            for led in scene.seeing.wiring[: len(spots)]
+        ]
 
     def _brightest(self, scene: SceneState, view: View, window: Window) -> list[Spot]:
         """Of each LED and its reflections in the window, the one that a detector would take for it."""
@@ -92,6 +102,14 @@ class CentreDeveloper:
             and window.v <= middle[1] < window.v + window.height
         )
         return {0: (middle + noise, CENTROID_SIGMA_PX)} if inside else {}
+
+
+def _error(shot: Shot, index: int, spot: Spot, exposure: Exposure, coded: bool) -> CentreError:
+    """One marker's error: against the dark frames, or in a code against all where it is off."""
+    lit = sum(leds >> index & 1 for leds in shot.leds)
+    if coded:
+        return centre_error(spot, exposure, lit, len(shot.leds) - lit, JOINT_EXCESS)
+    return centre_error(spot, exposure, lit, shot.leds.count(0))
 
 
 def _within(spot: Spot, window: Window) -> bool:

@@ -58,7 +58,7 @@ class Localise(ActionLeaf):
         self.services.journal.assessment(classification.fixed(fix))
         self.services.journal.estimate(fix)
         self.pose = fix
-        return Outcome(Reason.DONE, _summary(fix), fix)
+        return Outcome(Reason.DONE, "; ".join(filter(None, (_summary(fix), outcome.detail))), fix)
 
     def held_against_what_can_be(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
         """The outcome; IMPLAUSIBLE in place of a pose that is no number, old, or out of the belts' reach."""

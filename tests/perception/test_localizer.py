@@ -5,6 +5,7 @@ import pytest
 
 from executive.ports import LocaliseRequest
 from executive.types import Centres, Outcome, Quality, Reason, Source
+from perception.codes import is_coded
 from perception.localisation import picture
 from perception.localizer import LedStereoLocalizer
 from perception.rotation import log_map, matrix_from_quat
@@ -51,6 +52,68 @@ def test_more_pairs_are_taken_far_away():
         r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted())))
         counts.append(r.shots[0].leds.count(1))
     assert counts == sorted(set(counts))
+
+
+@pytest.mark.parametrize("geometric", [False, True], ids=["images", "centres"])
+def test_precise_does_not_end_where_single_markers_do(geometric):
+    r = robot(12.0, geometric=geometric, joints=(0.0, 1.0))
+    found = localizer(r)
+    outcome = r.run(
+        found.locate(LocaliseRequest(Quality.PRECISE, r.predicted((0.05, -0.03), 0.1, 0.05, 0.1)))
+    )
+    assert outcome.ok
+    assert outcome.value.markers == 4
+    assert nees(outcome.value, r) < 22
+    assert is_coded(r.shots[0].leds)
+    frames = sum(len(shot.leds) for shot in r.shots)
+    assert outcome.detail.startswith(f"{found.last.pairs} pairs, {frames} frames in {frames / 2:.0f} s")
+
+
+def test_far_asks_for_more_pairs_than_precise_and_gets_nearer():
+    sigmas = {}
+    for quality in (Quality.PRECISE, Quality.FAR):
+        r = robot(12.0, geometric=True, joints=(0.0, 1.0))
+        outcome = r.run(localizer(r).locate(LocaliseRequest(quality, r.predicted())))
+        sigmas[quality] = sum(len(shot.leds) for shot in r.shots)
+        assert outcome.ok
+    assert sigmas[Quality.FAR] > 1.5 * sigmas[Quality.PRECISE]
+
+
+def test_pairs_are_added_until_the_pose_is_as_good_as_wanted():
+    r = robot(14.0, joints=(0.0, 1.0), brightness=0.8)
+    outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted())))
+    assert outcome.ok
+    assert len(r.shots) >= 2
+    assert outcome.value.sigma_position_m < 0.033
+    assert nees(outcome.value, r) < 22
+
+
+def test_a_dead_marker_is_done_without_far_away_too():
+    r = robot(9.0, joints=(0.0, 1.0), hidden={2})
+    outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted((0.02, 0.0)))))
+    assert outcome.ok
+    assert outcome.value.markers == 3
+    assert nees(outcome.value, r) < 22
+
+
+@pytest.mark.parametrize("swap", [{0: 1, 1: 0}, {0: 2, 2: 0}])
+def test_swapped_identities_far_away_give_no_false_pose(swap):
+    r = robot(9.0, joints=(0.0, 1.0), swapped=swap)
+    outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted(), budget_s=200.0)))
+    assert not outcome.ok or nees(outcome.value, r) < 25
+
+
+def test_no_light_far_away_is_not_seen_within_budget():
+    r = robot(12.0, geometric=True, joints=(0.0, 1.0), hidden={0, 1, 2, 3})
+    outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted(), budget_s=900.0)))
+    assert outcome.reason is Reason.NOT_SEEN
+    assert r.clock.now_s <= 900.0
+
+
+def test_a_flat_plate_at_twenty_metres_is_a_poor_view():
+    r = robot(20.0, geometric=True, hidden={0, 1, 2, 3})
+    outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted(), budget_s=900.0)))
+    assert outcome.reason is Reason.POOR_VIEW
 
 
 def test_the_head_turns_to_the_prediction_only_when_needed():

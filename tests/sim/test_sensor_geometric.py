@@ -56,6 +56,26 @@ def test_more_pairs_give_better_centres():
     assert few / many == pytest.approx(2.0, rel=0.05)
 
 
+def test_a_coded_shot_shows_all_markers_of_a_far_rover_or_none():
+    codes = (15, 0, 3, 12, 9, 6, 5, 10)
+    scene = scene_at(flat_ground(), 15.0, 0.0)
+    shown = {}
+    for pairs in (16, 64, 400):
+        found = [np.isfinite(a.uv_px).all(axis=(-1)) for a in _centres(Shot(codes * (pairs // 4)), scene, 40)]
+        assert all(camera.all() or not camera.any() for one in found for camera in one)
+        shown[pairs] = np.mean([camera.all() for one in found for camera in one])
+    assert shown[16] < 0.2
+    assert shown[16] < shown[64] <= shown[400]
+    assert shown[400] > 0.95
+
+
+def test_in_a_code_an_led_has_the_centre_that_as_many_pairs_of_its_own_would_give():
+    scene = scene_at(flat_ground(), 4.0, 0.0)
+    coded = _centres(Shot((15, 0, 3, 12, 9, 6, 5, 10) * 8), scene)[0]
+    alone = _centres(Shot((*_sequence(32), 0)), scene)[0]
+    np.testing.assert_allclose(coded.sigma_px, alone.sigma_px, rtol=0.03)
+
+
 def test_far_markers_are_not_found_in_few_pairs():
     near, far = (
         np.isfinite(

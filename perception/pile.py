@@ -1,0 +1,55 @@
+"""What a coded look piles up, shot by shot, and the pose that it shows so far; in both tiers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.types import Centres, Images, Vec2
+from perception.chain import Chain
+from perception.exposure import view_of
+from perception.joint import JointFix, joint_fix
+from perception.mean_centres import MeanCentres, fix_from_centres
+from perception.plausibility import Rejection
+from perception.prediction import Expectation
+from perception.psf import marker_spread
+from perception.stacking import Stack
+
+
+class Pile:
+    """Sums of images, or of the geometric tier's centres. `frames` counts those taken in."""
+
+    def __init__(self, chain: Chain) -> None:
+        self._chain = chain
+        n = len(chain.markers_plc_m)
+        self._stacks = [Stack(n, chain.rig.sensor.noise_counts) for _ in (0, 1)]
+        self._corners: list[tuple[int, int]] = []
+        self._centres = MeanCentres.none(n)
+        self.frames = 0
+        self.reference: tuple[NDArray[np.float32], NDArray[np.float32]] | None = None
+
+    def add(self, data: Images | Centres) -> None:
+        """Take in one shot; all shots of a pile have the same windows."""
+        self.frames += len(data.shot.leds)
+        if isinstance(data, Centres):
+            self._centres = self._centres.with_shot(data)
+            return
+        self._corners = [(w.u, w.v) for w in data.windows]
+        for stack, counts in zip(self._stacks, data.counts, strict=True):
+            stack.add(counts, data.shot.leds)
+
+    @property
+    def problem(self) -> str:
+        """What makes the frames unusable, empty if nothing does."""
+        named = zip(("left", "right"), self._stacks, strict=True)
+        return "; ".join(f"{name} camera: {stack.problem}" for name, stack in named if stack.problem)
+
+    def answer(self, expectation: Expectation, tilt_rad: Vec2, widen: float) -> JointFix | Rejection:
+        """The one pose in the expectation's region that all of it shows."""
+        if not self._corners:
+            return fix_from_centres(self._chain, self._centres, expectation, tilt_rad)
+        left, right = (stack.difference() for stack in self._stacks)
+        self.reference = (left.reference, right.reference)
+        range_m = view_of(self._chain, expectation.state).range_m
+        spread = marker_spread(self._chain.rig, range_m)
+        return joint_fix(self._chain, (left, right), self._corners, spread, expectation, tilt_rad, widen)

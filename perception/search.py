@@ -1,0 +1,168 @@
+"""Coarse joint detection: where in the prediction's window do all markers in both cameras light up together?
+
+A hypothesis is (distance, heading, column, row). Distance and heading fix the pattern that the markers make
+in the two images; moving that pattern by whole columns is turning the rover about the mast, by whole rows
+lifting it. So for each pattern the scores of all places are a sum of shifted matched-filter images, and the
+lattice is as fine as the filter's width asks, no finer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.types import Array
+from perception.body import Transform
+from perception.chain import Chain, ChainState
+from perception.prediction import Expectation
+from perception.psf import Spread
+from perception.rotation import exp_map, rot_z
+
+REGION_SIGMAS = 3.5
+_STEP_WIDTHS = 1.3  # of the lattice: the farthest a marker moves from one pattern to the next, in its widths
+_ROOM_PX = 2.0
+_UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class FilterImages:
+    """One camera's matched-filter SNR, an image a marker (n, h, w), and its corner's full-frame place."""
+
+    snr: NDArray[np.float32]
+    corner_px: tuple[int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """A pose and the joint SNR that all markers have there."""
+
+    state: ChainState
+    snr: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """Pixels (2, n, 2) by which a body moves in the images: away from the mast, turning on the spot,
+    about the mast, up."""
+
+    away: Array
+    turn: Array
+    about_mast: Array
+    up: Array
+
+    @classmethod
+    def of(cls, chain: Chain, state: ChainState) -> _Motion:
+        _, J = chain.project(state)
+        x, y, _ = position = state.site_body.position_m
+        away = np.array([x, y, 0.0]) / max(math.hypot(x, y), 1e-9)
+        about = J[..., :3] @ np.cross(_UP, position) + J[..., 5]
+        return cls(J[..., :3] @ away, J[..., 5], about, J[..., 2])
+
+
+def search(
+    chain: Chain,
+    cameras: Sequence[FilterImages],
+    expectation: Expectation,
+    spread: Spread,
+    widen: float,
+    at_most: int,
+) -> tuple[list[Hypothesis], int]:
+    """The best hypotheses, one a pattern, best first, and how many were weighed."""
+    lattice = _Lattice.of(chain, expectation, _STEP_WIDTHS * spread.width_px, widen)
+    found: list[Hypothesis] = []
+    weighed = 0
+    for state in lattice.patterns(expectation.state):
+        uv, _ = chain.project(state)
+        if not np.isfinite(uv).all():
+            continue
+        score = _scores(cameras, uv, lattice.columns, lattice.rows)
+        weighed += score.size
+        row, column = np.unravel_index(int(score.argmax()), score.shape)
+        place = lattice.moved(state, int(column) - lattice.columns, int(row) - lattice.rows)
+        found.append(Hypothesis(place, float(score[row, column])))
+    found.sort(key=lambda h: -h.snr)
+    return found[:at_most], weighed
+
+
+@dataclass(frozen=True, eq=False)
+class _Lattice:
+    """The hypotheses: distances and headings off the expected ones, half-widths in columns and rows."""
+
+    away_m: Array
+    turn_rad: Array
+    columns: int
+    rows: int
+    column_per_rad: float
+    row_per_m: float
+
+    @classmethod
+    def of(cls, chain: Chain, expectation: Expectation, step_px: float, widen: float) -> _Lattice:
+        state, reach = expectation.state, REGION_SIGMAS * widen
+        motion = _Motion.of(chain, state)
+        x, y, _ = state.site_body.position_m
+        distance = max(math.hypot(x, y), 0.1)
+        away = np.array([x, y]) / distance
+        P = expectation.covariance
+        across = np.array([-away[1], away[0]])
+        sigma_away = math.sqrt(away @ P[:2, :2] @ away)
+        sigma_bearing = math.hypot(
+            math.sqrt(across @ P[:2, :2] @ across) / distance, chain.encoder_sigma_rad()[0]
+        )
+        per_rad, per_m = float(motion.about_mast[..., 0].mean()), float(motion.up[..., 1].mean())
+        return cls(
+            _steps(min(reach * sigma_away, 0.8 * distance), motion.away, step_px),
+            _steps(min(reach * math.hypot(math.sqrt(P[5, 5]), sigma_bearing), math.pi), motion.turn, step_px),
+            math.ceil(reach * sigma_bearing * abs(per_rad) + _ROOM_PX),
+            math.ceil(reach * math.sqrt(P[2, 2]) * abs(per_m) + _ROOM_PX),
+            per_rad,
+            per_m,
+        )
+
+    def patterns(self, expected: ChainState) -> Iterator[ChainState]:
+        """The expected state moved away and turned on the spot."""
+        body = expected.site_body
+        outward = body.position_m * [1.0, 1.0, 0.0] / max(math.hypot(*body.position_m[:2]), 1e-9)
+        for away in self.away_m:
+            for turn in self.turn_rad:
+                moved = Transform(rot_z(float(turn)) @ body.rotation, body.position_m + away * outward)
+                yield ChainState(moved, expected.head_rad, expected.joints_rad)
+
+    def moved(self, state: ChainState, columns: int, rows: int) -> ChainState:
+        """The state whose pattern is shifted by so many pixels: about the mast, and up or down."""
+        about = exp_map(_UP * (columns / self.column_per_rad))
+        lift = _UP * (rows / self.row_per_m)
+        body = state.site_body
+        return ChainState(
+            Transform(about @ body.rotation, about @ body.position_m + lift), state.head_rad, state.joints_rad
+        )
+
+
+def _steps(half_width: float, motion_px: Array, step_px: float) -> Array:
+    """Offsets within +-half_width, so fine that no marker strays from the pattern by more than `step_px`."""
+    strays = float(np.linalg.norm(motion_px - motion_px.mean(axis=(0, 1)), axis=-1).max())
+    count = math.ceil(half_width * strays / step_px)
+    return np.linspace(-half_width, half_width, 2 * count + 1)
+
+
+def _scores(cameras: Sequence[FilterImages], uv_px: Array, columns: int, rows: int) -> NDArray[np.float32]:
+    """Joint SNR (2 rows + 1, 2 columns + 1) of the pattern `uv_px` (2, n, 2) at all its shifts."""
+    total = np.zeros((2 * rows + 1, 2 * columns + 1), dtype=np.float32)
+    for camera, uv in zip(cameras, uv_px, strict=True):
+        place = np.rint(uv).astype(int) - camera.corner_px
+        for image, (u, v) in zip(camera.snr, place, strict=True):
+            _add(total, image, int(u) - columns, int(v) - rows)
+    total *= np.float32(1 / math.sqrt(uv_px.shape[0] * uv_px.shape[1]))
+    return total
+
+
+def _add(total: NDArray[np.float32], image: NDArray[np.float32], u: int, v: int) -> None:
+    """Add the part of an image that starts at column u, row v; what lies outside adds nothing."""
+    height, width = total.shape
+    u0, v0 = max(u, 0), max(v, 0)
+    u1, v1 = min(u + width, image.shape[1]), min(v + height, image.shape[0])
+    if u0 < u1 and v0 < v1:
+        total[v0 - v : v1 - v, u0 - u : u1 - u] += image[v0:v1, u0:u1]
