@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+from executive.rows import first_violated
 from executive.scenario import ResolvedScenario
 from proving.engine import Case, CaseClass, Ending
 
@@ -85,20 +85,14 @@ def _broken(result: Mapping[str, Any]) -> str:
 
 def first_violation(rows: Any, result: Mapping[str, Any]) -> str:
     """The row that was violated first: what, when, by how much. Nothing if all hold or are not known."""
-    broken = [row for row in rows if row["met"] is False]
-    if not broken:
+    row = first_violated(rows)
+    if row is None:
         return ""
-    row = min(broken, key=lambda row: _when(row, math.inf))
-    when_s = _when(row, float(result["mission_s"]))
-    by = row.get("robustness")
+    told, by = row.get("t_violation_s"), row.get("robustness")
+    when_s = result["mission_s"] if told is None else told
     margin = f" (robustness {by:.3g})" if isinstance(by, float) else ""
     ended = f"; ended {result['outcome']}" + (f", {result['reason']}" if result["reason"] else "")
     return f"{row['text']}: not met at {when_s:.0f} s{margin}{ended}"
-
-
-def _when(row: Mapping[str, Any], otherwise: float) -> float:
-    told = row.get("t_violation_s")
-    return otherwise if told is None else float(told)
 
 
 def repeat_command(case: Case, seed: int) -> str:

@@ -76,6 +76,7 @@ def run(
     from proving.campaign.file import find_campaign, load_campaign
     from proving.campaign.folder import CampaignFolder
     from proving.campaign.progress import CampaignBar, show_summary
+    from proving.campaign_report import write_campaign_report
 
     if (engine == "dask") != (address is not None):
         raise click.UsageError("got --engine dask without --address, or the other way round, expected both")
@@ -91,6 +92,7 @@ def run(
         tally = running.run_campaign(loaded, folder, work, repeats, done, watcher)
     about["summary"] = running.summary(loaded, tally, watch, len(tally.ended) - len(done))
     folder.describe(about)
+    write_campaign_report(folder.path)
     if as_json:
         click.echo(json.dumps(about, indent=2, ensure_ascii=False))
     elif not quiet:

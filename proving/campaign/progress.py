@@ -56,8 +56,11 @@ def show_summary(about: dict[str, Any], folder: str) -> None:
     console.print(f"[bold]{about['campaign']}[/]: {told['cases']} of {about['total']} cases")
     for name, share in told["settings"].items():
         low, high = share["interval"]
+        if share["share"] is None:
+            console.print(f"  {name or 'good'}: no case counts", highlight=False)
+            continue
         console.print(
-            f"  {name or 'good'}: {share['good']} of {share['cases']}, {share['share']:.1%} "
+            f"  {name or 'good'}: {share['good']} of {share['cases']} that count, {share['share']:.1%} "
             f"({share['confidence']:.0%} interval {low:.1%} to {high:.1%})",
             highlight=False,
         )
@@ -66,7 +69,7 @@ def show_summary(about: dict[str, Any], folder: str) -> None:
     if told["enough"]:
         console.print("  stopped early: the interval is narrow enough")
     console.print(f"  {told['elapsed_s']:.1f} s, {told['cases_per_hour']:.0f} cases an hour", highlight=False)
-    console.print(f"folder: {folder}", highlight=False, soft_wrap=True)
+    console.print(f"report: {folder}/report.html", highlight=False, soft_wrap=True)
 
 
 def _counts(tally: Tally) -> str:

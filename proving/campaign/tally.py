@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
 from executive.errors import LongarmError
 from proving.campaign.interval import wilson
 from proving.campaign.shape import StopRule
+from proving.engine import CaseClass
 from proving.verdict import GOOD, Word
 
 
@@ -30,6 +31,11 @@ class Ended:
     @property
     def good(self) -> bool:
         return self.verdict in GOOD
+
+    @property
+    def counts(self) -> bool:
+        """Whether it says anything of the system: not if it was the infrastructure, or tested nothing."""
+        return self.verdict != Word.INVALID and self.kind in (CaseClass.OK, CaseClass.SUT)
 
     def to_json(self) -> dict[str, Any]:
         """A line of the journal."""
@@ -64,10 +70,11 @@ class Tally:
         return dict(Counter(case.kind for case in self.ended.values()))
 
     def shares(self, confidence: float = 0.95) -> dict[str, dict[str, Any]]:
-        """For each setting the share of good verdicts with its interval."""
-        of_setting: dict[str, list[bool]] = defaultdict(list)
-        for number in sorted(self.ended):
-            of_setting[self.ended[number].setting].append(self.ended[number].good)
+        """For each setting the share of good verdicts with its interval, of the cases that count."""
+        of_setting: dict[str, list[bool]] = {case.setting: [] for _, case in sorted(self.ended.items())}
+        for case in self.ended.values():
+            if case.counts:
+                of_setting[case.setting].append(case.good)
         return {name: _share(good, confidence) for name, good in of_setting.items()}
 
     def outside_share(self) -> float | None:
@@ -91,11 +98,11 @@ class Tally:
 
 
 def _share(good: list[bool], confidence: float) -> dict[str, Any]:
-    low, high = wilson(sum(good), len(good), confidence)
+    low, high = wilson(sum(good), len(good), confidence) if good else (0.0, 1.0)
     return {
         "cases": len(good),
         "good": sum(good),
-        "share": sum(good) / len(good),
+        "share": sum(good) / len(good) if good else None,
         "confidence": confidence,
         "interval": [low, high],
     }
