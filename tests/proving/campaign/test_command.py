@@ -53,7 +53,12 @@ def compared(tmp_path_factory):
 def test_each_case_leaves_its_folder_and_the_campaign_its_summary(compared):
     folder, code = compared
     assert code == 1
-    assert sorted(path.name for path in folder.iterdir()) == ["campaign.json", "cases", "journal.jsonl", "report.html"]
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "campaign.json",
+        "cases",
+        "journal.jsonl",
+        "report.html",
+    ]
     names = {"scenario.yaml", "result.json", "result.parquet", "record.mcap", "truth.mcap"} - {"truth.mcap"}
     for number in range(4):
         assert {path.name for path in (folder / "cases" / f"{number:05d}").iterdir()} == names
