@@ -1,8 +1,8 @@
 """How far the head's frame is off, from what moved between two pictures of ground that does not.
 
-Eight numbers: the rotation vector and the shift of the head's frame in `site`, about the crossing of its axes,
-and how far the right camera has turned against the left one (yaw, pitch). A fit that few of the matches agree
-with is none: the pictures then show something else than moved ground.
+Eight numbers: the rotation vector and the shift of the head's frame in `site`, about the crossing of its
+axes, and how far the right camera has turned against the left one (yaw, pitch). A fit that few of the matches
+agree with is none: the pictures then show something else than moved ground.
 """
 
 from __future__ import annotations

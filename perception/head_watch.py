@@ -1,8 +1,8 @@
 """Looks now and then at ground that does not move, to notice when the head is wrong and not the rover.
 
-A head that turns with its lander sees every fix agree with the last. What stays is the ground: before the first
-fix the head takes reference pictures of it, beside the rover and near the lander, and later looks again in the
-same directions. One direction will do as long as nothing seems off; what does is looked at in all of them.
+A head that turns with its lander sees every fix agree with the last. What stays is the ground: before the
+first fix the head takes reference pictures of it, beside the rover and near the lander, and later looks again
+in the same directions. One direction will do as long as nothing seems off; what does is looked at in all.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from perception.chain import Chain
 from perception.routine import Steps, wait_for
 
 EVERY_S = 420.0
-"""Between two looks. A lander that turns by 4 degrees in an hour turns by half a degree in seven minutes, 40 mm
-at 5 m; a look takes some 20 s, a twentieth of that."""
+"""Between two looks. A lander that turns by 4 degrees in an hour turns by half a degree in seven minutes,
+40 mm at 5 m; a look takes some 20 s, a twentieth of that."""
 LIMIT_M = 0.015
 """What a fix may be off by unsaid: half of a way-point's usual tolerance, a seventeenth of the margin."""
 FALSE_ALARM = 1e-7
@@ -45,7 +45,7 @@ class Reference:
 
 
 class HeadWatch:
-    """Takes the reference, looks again when due, and says what is wrong with the head. `note` is the last word."""
+    """Takes the reference, looks again when due, says what is wrong with the head. `note`: its last word."""
 
     def __init__(self, devices: Devices, chain: Chain, clock: Clock) -> None:
         self._devices, self._chain, self._clock = devices, chain, clock
@@ -65,7 +65,8 @@ class HeadWatch:
             return None
         self._due_s = self._clock.now_s + EVERY_S
         if not self._references:
-            return (yield from self._take_references(rover, deadline_s))
+            yield from self._take_references(rover, deadline_s)
+            return None
         wrong = yield from self._compare(rover, deadline_s)
         if wrong is not None:
             self._due_s = self._clock.now_s  # nothing is to be believed before it is well again
@@ -78,8 +79,9 @@ class HeadWatch:
             if len(self._references) >= _DIRECTIONS or abs(head_rad[0]) > self._chain.rig.head.pan_limit_rad:
                 continue
             picture = yield from self._picture(head_rad, deadline_s)
-            # A picture that does not even resemble itself is no reference.
-            if not isinstance(picture, Outcome) and isinstance(align(self._chain, picture, picture), Alignment):
+            if isinstance(picture, Outcome):
+                continue
+            if isinstance(align(self._chain, picture, picture), Alignment):  # else it has no texture
                 self._references.append(Reference(head_rad, picture))
         self.note = f"head: {len(self._references)} reference pictures"
 

@@ -1,8 +1,8 @@
 """Where the patches of one picture of the ground are in another: correlation, coarse then fine.
 
-Normalised correlation knows neither gain nor offset of the light. It is sought at a quarter of the size as far
-as the head may have turned unnoticed, then at full size next to what was found, to a part of a pixel. A patch
-that resembles nothing is left out; whether enough of them agree is for the fit to say (perception.alignment).
+Normalised correlation knows neither gain nor offset of the light. It is sought at a quarter of the size as
+far as the head may have turned unnoticed, then at full size next to what was found, to a part of a pixel. A
+patch that resembles nothing is left out; whether enough agree is for the fit to say (perception.alignment).
 """
 
 from __future__ import annotations
@@ -123,7 +123,9 @@ def _found(
     right, bottom = min(u + shift[0] + reach + size, width), min(v + shift[1] + reach + size, height)
     if right - left < size + 2 or bottom - top < size + 2:
         return None
-    likeness = cv2.matchTemplate(after[top:bottom, left:right], patch, cv2.TM_CCOEFF_NORMED)
+    likeness = np.asarray(
+        cv2.matchTemplate(after[top:bottom, left:right], patch, cv2.TM_CCOEFF_NORMED), dtype=np.float32
+    )
     _, best, _, (i, j) = cv2.minMaxLoc(likeness)
     inside = 0 < i < likeness.shape[1] - 1 and 0 < j < likeness.shape[0] - 1
     if not inside or best < LEAST_ALIKE:

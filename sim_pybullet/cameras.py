@@ -55,6 +55,7 @@ def _developer(
         return ImageDeveloper(Picture(rig, terrain, sun, rng), rng, stopwatch)
     if tier == "geometric":
         field = HeightField(terrain)
-        marks = GroundMarks(field, rng.spawn(1)[0])
-        return CentreDeveloper(MarkerOptics(rig, calibrated_light(rig), field), Exposure(rig.sensor.bits), marks, rng)
+        marks = GroundMarks(field, rng.spawn(1)[0])  # its own chance: the markers' luck stays as it is
+        optics = MarkerOptics(rig, calibrated_light(rig), field)
+        return CentreDeveloper(optics, Exposure(rig.sensor.bits), marks, rng)
     raise ValueError(f"tier: got {tier!r}, expected one of {', '.join(TIERS)}")

@@ -27,10 +27,9 @@ class CentreDeveloper:
     """Answers a shot with `Centres`.
 
     A marker that is hidden, dead, outside the window or not found by chance is NaN; in a coded shot chance
-    finds all or none. A shot in which no LED
-    is lit is one for motion fragments: it answers with the rover's projected middle, the mean over its
-    frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN elsewhere. A single such frame is a picture:
-    it shows the `ground`.
+    finds all or none. A shot in which no LED is lit is one for motion fragments: it answers with the rover's
+    projected middle, the mean over its frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN
+    elsewhere. A single such frame is a picture: it shows the `ground`.
     """
 
     def __init__(
