@@ -9,7 +9,7 @@ from sim_pybullet.projection import View
 from sim_pybullet.raycast import HeightField
 
 SPACING_M, REACH_M, NEAREST_M = 0.15, 5.0, 0.8
-SIGMA_PX = 0.06
+SIGMA_PX = 0.017
 """How far the full tier's registration of a patch is off, root mean square an axis; see
 `benchmarks/head_watch.py`."""
 ROVER_REACH_M = 0.25
