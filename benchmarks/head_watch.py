@@ -1,10 +1,10 @@
-"""What watching the ground tells of the head, measured in both tiers: errors, refusals, false and missed alarms.
+"""What watching the ground tells of the head, measured in both tiers: errors and refusals.
 
     python -m benchmarks.head_watch [--trials N]
 
 Each trial takes a reference picture of procedural ground, moves the head's frame by a planted rotation and
-shift, changes the light, takes another picture and asks `perception.alignment`. The head points as well as it
-does; errors are also given in units of the reported covariance (mean of the squared error over it, 8 expected).
+shift, changes the light, takes another picture and asks `perception.alignment`. The head points as well as
+it does. NEES is the mean squared error in units of the reported covariance, 8 if that is true.
 """
 
 from __future__ import annotations
@@ -137,8 +137,9 @@ def row(name: str, results: list[tuple[Alignment | str, np.ndarray, float]]) -> 
     turn = np.sqrt((np.degrees(off[:, :3]) ** 2).mean(axis=0))
     shift = 1e3 * math.sqrt((off[:, 3:6] ** 2).sum(axis=1).mean())
     apart = math.degrees(math.sqrt((off[:, 6] ** 2).mean()))
+    x, y, z = turn
     return (
-        f"{name:42s} known {len(known) / len(results):4.0%}  rms x {turn[0]:.3f} y {turn[1]:.3f} z {turn[2]:.3f} deg"
+        f"{name:42s} known {len(known) / len(results):4.0%}  rms x {x:.3f} y {y:.3f} z {z:.3f} deg"
         f"  shift {shift:4.1f} mm  cameras {apart:.4f} deg  NEES {nees:5.1f}"
     )
 

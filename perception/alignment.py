@@ -23,7 +23,7 @@ LEAST_SHARE = 0.6  # of the matches must agree with the fit
 _STEPS, _OUTLIER, _MOST_REST_PX, _SIGMA_PX = 12, 3.0, 1.0, 0.03
 _PRIOR_SIGMA = np.array([0.2] * 3 + [0.1] * 3 + [0.02] * 2)  # what a head on a lander might do [rad, m]
 _SHIFT_SIGMA_M, _APART_SIGMA_RAD = 0.0003, 1e-5  # what patches are off by in common, as measured
-_UNLEVEL = 0.02  # ground that is not level as taken makes a shift of so much of a rotation's
+_UNLEVEL = 0.02  # ground that is not level, as it is taken for, spoils this share of a motion found
 _LEAST_DOWN = 0.05  # a line of sight flatter than this meets no ground near by
 
 
@@ -125,7 +125,8 @@ def _fitted(chain: Chain, sights: list[_Sights], head_rad: Vec2) -> Alignment | 
         return f"{agree.mean():.0%} of {len(size)} patches of ground agree to {scale:.1f} px"
     covariance = np.linalg.inv(information)
     covariance[:3, :3] += _pointing_covariance(chain, head_rad)
-    astray_m = _UNLEVEL * chain.rig.head.mast_height_m * float(np.linalg.norm(x[:3]))
+    moved_m = chain.rig.head.mast_height_m * np.linalg.norm(x[:3]) + np.linalg.norm(x[3:6])
+    astray_m = _UNLEVEL * float(moved_m)
     covariance[3:6, 3:6] += (_SHIFT_SIGMA_M**2 + astray_m**2) * np.eye(3)
     covariance[6:, 6:] += _APART_SIGMA_RAD**2 * np.eye(2)
     return Alignment(x, covariance)

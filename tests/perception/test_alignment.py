@@ -1,5 +1,7 @@
 """What the ground says of the head: planted rotations and shifts are told, disagreement is not believed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -72,11 +74,8 @@ def test_what_does_not_move_as_one_is_not_known():
 
 def test_too_little_ground_is_not_known():
     rng = np.random.default_rng(6)
-    few = picture(rng)
-    left, right = few.ground
-    few = Centres(
-        0.0, few.shot, few.uv_px, few.sigma_px, few.head, (left, Landmarks(right.names[:3], right.uv_px[:3]))
-    )
+    left, right = picture(rng).ground
+    few = replace(picture(rng), ground=(left, Landmarks(right.names[:3], right.uv_px[:3])))
     assert "3 patches" in align(CHAIN, picture(rng), few)
 
 
@@ -84,13 +83,13 @@ def test_the_reported_covariance_holds_the_scatter():
     rng = np.random.default_rng(7)
     pan_sigma, tilt_sigma = CHAIN.encoder_sigma_rad()[:2]
     tilt_axis = np.array([-np.sin(HEAD_RAD[0]), np.cos(HEAD_RAD[0]), 0.0])
+
+    def missed():
+        return rng.normal(0, pan_sigma) * np.array([0, 0, 1.0]) + rng.normal(0, tilt_sigma) * tilt_axis
+
     squares = []
     for _ in range(40):
-        missed = [
-            rng.normal(0, pan_sigma) * np.array([0, 0, 1.0]) + rng.normal(0, tilt_sigma) * tilt_axis
-            for _ in "ab"
-        ]
-        found = align(CHAIN, picture(rng, missed[0]), picture(rng, missed[1]))
+        found = align(CHAIN, picture(rng, missed()), picture(rng, missed()))
         squares.append(found.mean @ np.linalg.solve(found.covariance, found.mean))
     assert 1.0 < np.mean(squares) < 12.0  # 8 degrees of freedom, of which the floors hold some still
 
