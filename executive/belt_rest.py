@@ -10,6 +10,9 @@ from executive.types import TrackReading
 LEAST_M = 0.005
 """What a belt may count at rest: more than its counters jitter, less than harms; four seconds of driving."""
 
+AGAIN_M = 0.030
+"""What it may then go on by before that is told anew: what answers the first alarm must get to wait it out."""
+
 
 @dataclass
 class RestingTracks:
@@ -18,9 +21,11 @@ class RestingTracks:
     inner: Tracks
     _drive: Action[TrackReading] | None = None
     _rest_m: tuple[float, float] | None = None
+    _allowed_m: float = LEAST_M
 
     def drive(self, left_m: float, right_m: float, speed_m_s: float) -> Action[TrackReading]:
-        self._drive, self._rest_m = self.inner.drive(left_m, right_m, speed_m_s), None
+        self._drive = self.inner.drive(left_m, right_m, speed_m_s)
+        self._rest_m, self._allowed_m = None, LEAST_M
         return self._drive
 
     def stop(self) -> None:
@@ -41,9 +46,9 @@ class RestingTracks:
             self._rest_m = counted_m
             return None
         left_m, right_m = (counted - rest for counted, rest in zip(counted_m, rest_m, strict=True))
-        if not max(abs(left_m), abs(right_m)) > LEAST_M:
+        if not max(abs(left_m), abs(right_m)) > self._allowed_m:
             return None
         self.inner.stop()
-        self._rest_m = counted_m
+        self._rest_m, self._allowed_m = counted_m, AGAIN_M
         side, far_m = ("left", left_m) if abs(left_m) >= abs(right_m) else ("right", right_m)
         return f"the {side} belt moved by {far_m * 1e3:.0f} mm without a command"
