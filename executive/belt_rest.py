@@ -11,7 +11,7 @@ LEAST_M = 0.005
 """What a belt may count at rest: more than its counters jitter, less than harms; four seconds of driving."""
 
 AGAIN_M = 0.030
-"""What it may then go on by before that is told anew: what answers the first alarm must get to wait it out."""
+"""What it may go on by before that is told anew: what answers the first alarm must get to wait it out."""
 
 
 @dataclass
