@@ -13,6 +13,10 @@ from dataclasses import dataclass
 from executive.prediction import MotionState, wrap_rad
 from executive.types import Outcome, Point, PoseEstimate, Reason, Segment
 
+BELT_PER_ROOM = 2.0
+"""Belt travel of one turn, over the room to the margin: beside a rock a third of it has moved a rover."""
+LEAST_TURN_M = 0.01  # of belt travel; less does not get a turn to its end
+
 
 @dataclass(frozen=True)
 class Belts:
@@ -45,6 +49,20 @@ def turn(motion: MotionState, angle_rad: float, gauge_m: float) -> Belts:
     """Belt travels that turn by `angle_rad` on the spot, at the efficiency learnt so far."""
     rotation = angle_rad / motion.yaw_efficiency
     return Belts(-rotation * gauge_m / 2, rotation * gauge_m / 2)
+
+
+def room_m(pose: PoseEstimate, segment: Segment, sigmas: float) -> float:
+    """How far the rover may stray before it may be beyond the off-track margin; negative where it may be."""
+    cross = abs(segment.offset(pose.x_m, pose.y_m).cross_m)
+    return segment.off_track_m - cross - sigmas * pose.sigma_across_m(segment)
+
+
+def within_room(belts: Belts, room_m: float) -> Belts:
+    """A turn cut short so that it cannot push the rover out of the room it has: what is in its way may."""
+    longest_m = max(abs(belts.left_m), abs(belts.right_m))
+    allowed_m = max(BELT_PER_ROOM * room_m, LEAST_TURN_M)
+    share = min(1.0, allowed_m / longest_m) if longest_m else 1.0
+    return Belts(share * belts.left_m, share * belts.right_m)
 
 
 def straight(motion: MotionState, distance_m: float, turn_rad: float, gauge_m: float) -> Belts:

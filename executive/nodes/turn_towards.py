@@ -20,7 +20,8 @@ HERE_M = 0.05  # a rover that has come so far from where it began to turn turns 
 class TurnTowards(DrivingLeaf):
     """Turn on the spot to face `target`, as far as the motion model knows this soil.
 
-    Fails OFF_HEADING after six turns that came no nearer.
+    Near the off-track margin it turns in parts, each to be verified. Fails OFF_HEADING after six turns that
+    came no nearer.
     """
 
     target = In[Point](POINT, "what to face")
@@ -42,7 +43,10 @@ class TurnTowards(DrivingLeaf):
             outcome: Outcome[Belts] = Outcome(Reason.OFF_HEADING, detail)
             self.services.journal.assessment(self.services.classification.failed(outcome))
             return outcome
-        return Outcome(Reason.DONE, value=guidance.turn(motion, error, self.services.rig.rover.track_gauge_m))
+        belts = guidance.turn(motion, error, self.services.rig.rover.track_gauge_m)
+        if self.segment is not None:
+            belts = guidance.within_room(belts, guidance.room_m(pose, self.segment, self.sigmas))
+        return Outcome(Reason.DONE, value=belts)
 
     def _turned_in_vain(self, pose: PoseEstimate, error_rad: float) -> bool:
         """Whether as many turns as are allowed have come no nearer to this target, here."""
