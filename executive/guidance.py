@@ -13,10 +13,6 @@ from dataclasses import dataclass
 from executive.prediction import MotionState, wrap_rad
 from executive.types import Outcome, Point, PoseEstimate, Reason, Segment
 
-BELT_PER_ROOM = 2.0
-"""Belt travel of one turn, over the room to the margin: beside a rock a third of it has moved a rover."""
-LEAST_TURN_M = 0.01  # of belt travel; less does not get a turn to its end
-
 
 @dataclass(frozen=True)
 class Belts:
@@ -58,10 +54,12 @@ def room_m(pose: PoseEstimate, segment: Segment, sigmas: float) -> float:
 
 
 def within_room(belts: Belts, room_m: float) -> Belts:
-    """A turn cut short so that it cannot push the rover out of the room it has: what is in its way may."""
+    """A turn cut short to as much belt travel [m] as there is room.
+
+    What is in the way of a turn pushes the rover aside, beside a rock by half of the belts' travel.
+    """
     longest_m = max(abs(belts.left_m), abs(belts.right_m))
-    allowed_m = max(BELT_PER_ROOM * room_m, LEAST_TURN_M)
-    share = min(1.0, allowed_m / longest_m) if longest_m else 1.0
+    share = min(1.0, max(room_m, 0.0) / longest_m) if longest_m else 1.0
     return Belts(share * belts.left_m, share * belts.right_m)
 
 

@@ -14,6 +14,7 @@ from executive.values import POINT
 
 MOST_TURNS = 6  # in a row without coming nearer: soil that was learnt needs two or three
 NEARER = 0.8  # of the least error so far counts as nearer
+LEAST_ROOM_M = 0.01  # to the off-track margin; turns of less belt travel come to nothing
 HERE_M = 0.05  # a rover that has come so far from where it began to turn turns anew
 
 
@@ -45,7 +46,10 @@ class TurnTowards(DrivingLeaf):
             return outcome
         belts = guidance.turn(motion, error, self.services.rig.rover.track_gauge_m)
         if self.segment is not None:
-            belts = guidance.within_room(belts, guidance.room_m(pose, self.segment, self.sigmas))
+            room_m = guidance.room_m(pose, self.segment, self.sigmas)
+            if room_m < LEAST_ROOM_M:
+                return Outcome(Reason.OFF_TRACK, f"{room_m * 1e3:.0f} mm to the margin, too near to turn")
+            belts = guidance.within_room(belts, room_m)
         return Outcome(Reason.DONE, value=belts)
 
     def _turned_in_vain(self, pose: PoseEstimate, error_rad: float) -> bool:
