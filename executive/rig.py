@@ -17,7 +17,7 @@ ARC_MINUTE_RAD = math.pi / (180 * 60)
 
 @dataclass(frozen=True)
 class CameraCalibration:
-    """One camera. `position_ih_m`, yaw (left positive), pitch (down positive) and roll place it in frame `ih`.
+    """One camera. `position_ih_m`, yaw (left positive), pitch (down positive) and roll place it in `ih`.
 
     R_ih_cam = Rz(yaw) Ry(pitch) Rx(roll) A; at zero, A: z along ih x (forward), x along -ih y (right), y
     along -ih z (down).
@@ -40,7 +40,8 @@ class HeadCalibration:
     """The pan-tilt unit: `ih` sits at its crossing axes, `mast_height_m` over the site origin.
 
     R_site_ih = Ry(lean[1]) Rx(lean[0]) Rz(pan + pan_zero) Rx(axes_skew) Ry(tilt + tilt_zero): pan positive to
-    the left, tilt positive downwards, both as the encoders read them. Accuracies are the half-widths of a uniform error, drawn anew at each move (paper, table 1).
+    the left, tilt positive downwards, both as the encoders read them.
+    Accuracies are the half-widths of a uniform error, drawn anew at each move (paper, table 1).
     """
 
     mast_height_m: float = 1.5

@@ -1,4 +1,4 @@
-"""In-situ calibration of the head from views of the rover's markers and of the terrain: docs/calibration.md."""
+"""In-situ calibration of the head from views of rover and terrain: docs/calibration.md."""
 
 from perception.calibration.parameters import NAMES, PARAMETERS, Parameter, changed_rig
 from perception.calibration.result import Calibrated, Direction

@@ -1,8 +1,7 @@
-"""The bundle: residuals of all images, encoders, inclinometers, landmarks and priors, and their Jacobian."""
+"""The bundle: residuals of all images and readings, and their Jacobian, analytic but for the parameters."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,18 +10,16 @@ from scipy import sparse
 from executive.rig import RigCalibration
 from executive.types import Array
 from perception.calibration.parameters import changed_rig
+from perception.calibration.readings import readings
 from perception.calibration.sightings import Indices, Sightings
 from perception.calibration.survey import Survey
 from perception.calibration.unknowns import Unknowns, turn_rate
 from perception.camera import StereoModel
 from perception.chain import Chain
 from perception.head import head_rates, site_ih
-from perception.pose import roll_pitch
-from perception.rotation import rot_y, skew
+from perception.rotation import skew
 
 _PROBE = 1e-3  # of a prior sigma, for central differences by the rig's parameters
-_POINT_SIGMA = np.array([1.0, 1.0, 0.5])  # of bearing and inverse distance: only so that nothing is singular
-_POINT_MEAN = np.array([0.0, 0.0, 0.1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,11 +35,14 @@ class Bundle:
 
     def residuals(self, x: Array) -> Array:
         """Images that count (2 a piece), then everything else."""
-        return np.concatenate([self.image_residuals(x)[self.sightings.seen].ravel(), self._others(x)[0]])
+        return np.concatenate([self.image_residuals(x)[self.sightings.seen].ravel(), self._readings_of(x)[0]])
 
     def jacobian(self, x: Array) -> sparse.csr_matrix:
         by_x = self._images_by_unknowns(x)[np.repeat(self.sightings.seen.ravel(), 2)]
-        return sparse.csr_matrix(sparse.vstack([by_x, self._others(x)[1]]))
+        return sparse.csr_matrix(sparse.vstack([by_x, self._readings_of(x)[1]]))
+
+    def dense_jacobian(self, x: Array) -> Array:
+        return np.asarray(self.jacobian(x).toarray())
 
     def image_residuals(self, x: Array) -> Array:
         """Measured less predicted of each image (2, N, 2) in sigmas, NaN where none is seen."""
@@ -60,6 +60,9 @@ class Bundle:
     @property
     def _marker_targets(self) -> int:
         return len(self.survey.stations) * len(self.rig.markers.positions_plc_m)
+
+    def _readings_of(self, x: Array) -> tuple[Array, sparse.csr_matrix]:
+        return readings(self.rig, self.survey, self.sightings.names, self.unknowns, x)
 
     def _values(self, x: Array) -> Array:
         return x[: self.unknowns.parameters] * self.sigmas
@@ -168,41 +171,3 @@ class Bundle:
             rate = turn_rate(self.unknowns.station_step(x, s)[3:])
             moves += [np.hstack([np.eye(3), -skew(arm) @ rate]) for arm in arms]
         return moves + [self.unknowns.point(x, p)[1] for p in range(len(self.sightings.names))]
-
-    def _others(self, x: Array) -> tuple[Array, sparse.csr_matrix]:
-        """Priors, encoders, inclinometers and landmarks, with their Jacobian."""
-        u, size = self.unknowns, self.unknowns.size
-        priors = u.first_station
-        off = [x[:priors]]
-        J = [sparse.eye(priors, size, format="csr")]
-        for s, station in enumerate(self.survey.stations):
-            residual, by_turn = self._inclinometers(x, s, station.joints_rad[1], np.array(station.tilt_rad))
-            off.append(residual)
-            J.append(_block(by_turn, u.first_station + 6 * s + 3, size))
-        for p, name in enumerate(self.sightings.names):
-            first = u.first_point + 3 * p
-            position, by_point = u.point(x, p)
-            landmark = self.survey.landmarks.get(name)
-            if landmark is None:
-                off.append((x[first : first + 3] - _POINT_MEAN) / _POINT_SIGMA)
-                J.append(_block(np.diag(1 / _POINT_SIGMA), first, size))
-            else:
-                whiten = np.linalg.inv(np.linalg.cholesky(landmark.covariance))
-                off.append(whiten @ (position - landmark.position_site_m))
-                J.append(_block(whiten @ by_point, first, size))
-        return np.concatenate(off), sparse.csr_matrix(sparse.vstack(J))
-
-    def _inclinometers(self, x: Array, index: int, cabin_rad: float, read_rad: Array) -> tuple[Array, Array]:
-        """Predicted less read roll and pitch of the body under the plate; the joint's error is in pitch."""
-        tilt_sigma, joint_sigma = self.rig.rover.inclinometer_sigma_rad, self.rig.cabin.joint_sigma_rad
-        sigma = np.maximum([tilt_sigma, math.hypot(tilt_sigma, joint_sigma)], 1e-7)
-        angles, by_turn = roll_pitch(self.unknowns.station(x, index).rotation @ rot_y(cabin_rad))
-        rate = turn_rate(self.unknowns.station_step(x, index)[3:])
-        return (angles - read_rad) / sigma, by_turn @ rate / sigma[:, None]
-
-
-def _block(values: Array, first: int, size: int) -> sparse.csr_matrix:
-    """A block of rows whose columns begin at `first`."""
-    rows, width = values.shape
-    at, where = np.divmod(np.arange(rows * width), width)
-    return sparse.csr_matrix((values.ravel(), (at, first + where)), shape=(rows, size))

@@ -1,4 +1,4 @@
-"""A rig calibrated in situ: its parameters with covariance, what was observed, and what is left of the error."""
+"""A rig calibrated in situ: its parameters, their covariance, what was observed, what error is left."""
 
 from __future__ import annotations
 

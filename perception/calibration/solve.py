@@ -56,7 +56,7 @@ def _minimum(bundle: Bundle, start: Array) -> OptimizeResult:
     return least_squares(
         bundle.residuals,
         start,
-        jac=lambda x: bundle.jacobian(x).toarray(),
+        jac=bundle.dense_jacobian,
         method="trf",
         x_scale="jac",
         max_nfev=_MOST_STEPS,
@@ -64,7 +64,7 @@ def _minimum(bundle: Bundle, start: Array) -> OptimizeResult:
 
 
 def _fitting(bundle: Bundle, x: Array) -> Mask:
-    """The images that fit a solution, judged by the scatter of the middle half until that is down to noise."""
+    """The images that fit a solution, judged by the median scatter until that is down to noise."""
     with np.errstate(invalid="ignore"):
         off2 = (bundle.image_residuals(x) ** 2).sum(axis=-1)
     scatter = float(np.median(off2[bundle.sightings.seen])) / _MEDIAN_OFF2

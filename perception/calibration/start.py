@@ -7,7 +7,7 @@ import numpy as np
 from executive.rig import RigCalibration
 from executive.types import Array
 from perception.body import Transform
-from perception.calibration.sightings import Sightings
+from perception.calibration.sightings import Mask, Sightings
 from perception.calibration.survey import FARTHEST_M, NEAREST_M, Survey
 from perception.calibration.unknowns import Bearing, Unknowns
 from perception.camera import triangulate
@@ -51,7 +51,7 @@ def _bearing(chain: Chain, survey: Survey, sightings: Sightings, target: int, na
     return Bearing.towards(mast, chain.site_ih(survey.looks[sightings.look[row]].head_rad).apply(point))
 
 
-def _in_head(chain: Chain, uv_px: Array, seen: Array) -> Array:
+def _in_head(chain: Chain, uv_px: Array, seen: Mask) -> Array:
     """A point (3,) in ih on the line of sight, at the triangulated distance if that makes sense."""
     camera = int(np.flatnonzero(seen)[0])
     ray = chain.model.rays_ih(uv_px)[camera, 0]

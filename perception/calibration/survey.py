@@ -39,7 +39,7 @@ class PointImages:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One pointing of the head (pan, tilt as the encoders read), what it showed, and how warm the head was."""
+    """One pointing of the head (pan, tilt as the encoders read), what it showed, how warm the head was."""
 
     head_rad: Vec2
     rover: RoverImages | None = None

@@ -1,8 +1,8 @@
 """Everything that a calibration solves for, as one vector, and what that vector says of the world.
 
-The vector holds, in this order: the rig's parameters and the pointing errors (pan, tilt) of each look, both in
-units of their prior sigmas; a step (position, rotation vector, in site) from the first guess of `plc` at each
-station; bearing and inverse distance of each point, since near and far alike images are nearly linear in them.
+The vector holds, in this order: the rig's parameters and the pointing errors (pan, tilt) of each look, both
+in units of their prior sigmas; a step (position, rotation vector, in site) from the first guess of `plc` at
+each station; bearing and inverse distance of each point, in which images are nearly linear near and far.
 """
 
 from __future__ import annotations
@@ -93,8 +93,6 @@ def turn_rate(turn_rad: Array) -> Array:
     angle = float(np.linalg.norm(turn_rad))
     K = skew(turn_rad)
     if angle < 1e-6:
-        rate: Array = np.eye(3) + K / 2
-        return rate
+        return np.asarray(np.eye(3) + K / 2)
     first, second = (1 - math.cos(angle)) / angle**2, (angle - math.sin(angle)) / angle**3
-    rate = np.eye(3) + first * K + second * (K @ K)
-    return rate
+    return np.asarray(np.eye(3) + first * K + second * (K @ K))
