@@ -37,7 +37,7 @@ BETTER = 10.0  # times, at least
 
 @dataclass(frozen=True)
 class Trial:
-    """Systematic errors (along, across, up) before and after, the covariance that is claimed for the latter, the fit."""
+    """Systematic errors (along, across, up) before and after, the covariance claimed, the fit."""
 
     before_m: Array
     after_m: Array
@@ -80,7 +80,7 @@ def systematic_error(true: RigCalibration, used: RigCalibration, state: ChainSta
 
 
 def line_of_sight(state: ChainState) -> Array:
-    """Rotation (3, 3) of site into along, across (left) and up, as the ground below the mast sees the rover."""
+    """Rotation (3, 3) of site into along, across (left) and up, as seen from the mast's foot."""
     x, y, _ = state.site_body.position_m
     return rot_z(float(-np.arctan2(y, x)))
 
@@ -112,7 +112,8 @@ def describe(trials: list[Trial], before: Array, after: Array) -> None:
     fits = [t.calibrated for t in trials]
     print(
         f"  chi-square / dof {np.mean([f.chi2 / f.dof for f in fits]):.3f},"
-        f" {np.mean([f.rejected for f in fits]):.1f} of {np.mean([f.images for f in fits]):.0f} images set aside,"
+        f" {np.mean([f.rejected for f in fits]):.1f} of {np.mean([f.images for f in fits]):.0f}"
+        " images set aside,"
         f" {np.mean([t.seconds for t in trials]):.2f} s a calibration"
     )
 
@@ -182,9 +183,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
     holds = True
-    for outliers in (0.0, 0.05):
-        print(f"{asked.trials} trials, {outliers:.0%} of the images mismatched")
-        holds &= judged([trial(asked.seed, i, outliers) for i in range(asked.trials)])
+    for outliers, trials in ((0.0, asked.trials), (0.05, max(asked.trials // 3, 1))):
+        print(f"{trials} trials, {outliers:.0%} of the images mismatched")
+        holds &= judged([trial(asked.seed, i, outliers) for i in range(trials)])
     references(asked.seed)
     return 0 if holds else 1
 

@@ -33,7 +33,9 @@ class Sightings:
         """All images; a point of unknown place that only one image shows says nothing and is left out."""
         names = tuple(sorted({name for look in survey.looks if look.points for name in look.points.names}))
         number = {name: len(survey.stations) * markers + i for i, name in enumerate(names)}
-        look, target, uv, sigma = [], [], [], []
+        look: list[int] = []
+        target: list[int] = []
+        uv, sigma = [], []
         for index, shown in enumerate(survey.looks):
             if shown.rover is not None:
                 first = shown.rover.station * markers
@@ -50,7 +52,8 @@ class Sightings:
             raise ValueError("looks: got none that shows rover or points, expected one or more")
         uv_px = np.concatenate(uv, axis=1, dtype=np.float64)
         sigma_px = np.concatenate(sigma, axis=1, dtype=np.float64)
-        every = cls(np.array(look), np.array(target), uv_px, sigma_px, np.isfinite(uv_px).all(axis=-1), names)
+        seen = np.asarray(np.isfinite(uv_px).all(axis=-1))
+        every = cls(np.array(look), np.array(target), uv_px, sigma_px, seen, names)
         return every._without_lone_points(survey, markers)
 
     def _without_lone_points(self, survey: Survey, markers: int) -> Sightings:

@@ -21,8 +21,9 @@ from perception.pose import chi2_limit
 
 _GATE = chi2_limit(2, 0.9999)  # of one image
 _MEDIAN_OFF2 = 2 * math.log(2.0)  # of images that fit
-_GATINGS = 12
+_GATINGS = 20
 _MOST_STEPS = 60
+_ROUGHLY, _EXACTLY = 1e-4, 1e-10  # least relative gain of a step that is worth another
 _REFERENCE_K = 293.0
 
 
@@ -41,17 +42,17 @@ def calibrate(
     every = Sightings.of(survey.checked(markers), markers)
     unknowns = first_guess(rig, survey, every, len(PARAMETERS))
     bundle = Bundle(rig, survey, every, unknowns, sigmas, temperature_k)
-    done = _minimum(bundle, unknowns.start())
+    done = _minimum(bundle, unknowns.start(), _ROUGHLY)
     for _ in range(_GATINGS):
         fits = _fitting(bundle, done.x)
         if (fits == bundle.sightings.seen).all():
             break
         bundle = replace(bundle, sightings=every.only(fits))
-        done = _minimum(bundle, done.x)
-    return _calibrated(bundle, done, every)
+        done = _minimum(bundle, done.x, _ROUGHLY)
+    return _calibrated(bundle, _minimum(bundle, done.x, _EXACTLY), every)
 
 
-def _minimum(bundle: Bundle, start: Array) -> OptimizeResult:
+def _minimum(bundle: Bundle, start: Array, tolerance: float) -> OptimizeResult:
     """Dense, since the exact step needs a fifth of the iterations that LSMR's takes."""
     return least_squares(
         bundle.residuals,
@@ -59,16 +60,26 @@ def _minimum(bundle: Bundle, start: Array) -> OptimizeResult:
         jac=bundle.dense_jacobian,
         method="trf",
         x_scale="jac",
+        ftol=tolerance,
         max_nfev=_MOST_STEPS,
     )
 
 
 def _fitting(bundle: Bundle, x: Array) -> Mask:
-    """The images that fit a solution, judged by the median scatter until that is down to noise."""
+    """The images to go on with: all that fit, and of those that do not all but the worst of each target.
+
+    A wrong image drags the others of its target along; these fit once it is set aside. What fits is judged by
+    the median scatter until that is down to noise.
+    """
+    rows = bundle.sightings
     with np.errstate(invalid="ignore"):
         off2 = (bundle.image_residuals(x) ** 2).sum(axis=-1)
-    scatter = float(np.median(off2[bundle.sightings.seen])) / _MEDIAN_OFF2
-    return np.asarray(off2 < _GATE * max(scatter, 1.0))
+    scatter = float(np.median(off2[rows.seen])) / _MEDIAN_OFF2
+    fits = np.asarray(off2 < _GATE * max(scatter, 1.0))
+    suspect = np.where(rows.seen & ~fits, np.nan_to_num(off2, nan=np.inf), -1.0)
+    worst = np.zeros(int(rows.target.max()) + 1)
+    np.maximum.at(worst, rows.target, suspect.max(axis=0))
+    return np.asarray(fits | ((suspect >= 0) & (suspect < worst[rows.target])))
 
 
 def _calibrated(bundle: Bundle, done: OptimizeResult, every: Sightings) -> Calibrated:
