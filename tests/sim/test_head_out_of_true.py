@@ -1,4 +1,4 @@
-"""Two projections written apart, that of the simulator and that of perception, agree on a head out of true."""
+"""Two projections written apart, the simulator's and perception's, agree on a head out of true."""
 
 import numpy as np
 
