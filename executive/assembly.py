@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from executive.backends import BackendRequest
+from executive.belt_rest import RestingTracks
 from executive.classification import Classification
 from executive.clock import Stopwatch
 from executive.command_log import logged
@@ -25,7 +27,7 @@ from executive.telemetry import events
 from executive.telemetry.recorder import Recorder
 from executive.telemetry.versions import versions
 from executive.tree.build import build
-from executive.types import PoseEstimate, Segment, Source
+from executive.types import Outcome, PoseEstimate, Reason, Segment, Source
 
 TICK_S = 1.0
 
@@ -82,6 +84,8 @@ def _prepare(
     journal.hear = faults.sightings.hear
     strategies = faults.wrap_pool(strategies)
     devices = logged(faults.wrap(backend.devices), journal.write)
+    belts = RestingTracks(devices.tracks)
+    devices = replace(devices, tracks=belts)
     services = Services(
         clock=backend.clock,
         devices=devices,
@@ -94,6 +98,14 @@ def _prepare(
     inputs = {"route": route, **scenario.mission.tree_inputs}
     built = build(scenario.tree, services, inputs, strategy_trees(strategies, scenario.instead))
     faults.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
+
+    def each_tick() -> None:
+        faults.tick(journal, route)
+        telemetry = services.classification.telemetry
+        problem = belts.astray(telemetry.tracks) if telemetry else None
+        if problem is not None:
+            built.trace.alarm = Outcome(Reason.DEVICE, problem)
+
     return Run(
         root=built.root,
         trace=built.trace,
@@ -104,7 +116,7 @@ def _prepare(
         recorder=recorder,
         stopwatch=watch,
         time_limit_s=scenario.time_limit_s,
-        each_tick=lambda: faults.tick(journal, route),
+        each_tick=each_tick,
         invalid=lambda: faults.conclude(journal),
     )
 

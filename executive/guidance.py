@@ -47,6 +47,22 @@ def turn(motion: MotionState, angle_rad: float, gauge_m: float) -> Belts:
     return Belts(-rotation * gauge_m / 2, rotation * gauge_m / 2)
 
 
+def room_m(pose: PoseEstimate, segment: Segment, sigmas: float) -> float:
+    """How far the rover may stray before it may be beyond the off-track margin; negative where it may be."""
+    cross = abs(segment.offset(pose.x_m, pose.y_m).cross_m)
+    return segment.off_track_m - cross - sigmas * pose.sigma_across_m(segment)
+
+
+def within_room(belts: Belts, room_m: float) -> Belts:
+    """A turn cut short to as much belt travel [m] as there is room.
+
+    What is in the way of a turn pushes the rover aside, beside a rock by half of the belts' travel.
+    """
+    longest_m = max(abs(belts.left_m), abs(belts.right_m))
+    share = min(1.0, max(room_m, 0.0) / longest_m) if longest_m else 1.0
+    return Belts(share * belts.left_m, share * belts.right_m)
+
+
 def straight(motion: MotionState, distance_m: float, turn_rad: float, gauge_m: float) -> Belts:
     """Belt travels that advance by `distance_m` while turning by `turn_rad`, drift compensated."""
     travel = distance_m / motion.advance

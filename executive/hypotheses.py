@@ -31,6 +31,7 @@ class Hypothesis(StrEnum):
     LOST_ROVER = "lost_rover"
     LOCALISATION_OUTLIER = "localisation_outlier"
     OVERSHOOT = "overshoot"
+    HEAD_MISALIGNED = "head_misaligned"
 
 
 SEEING = frozenset(
@@ -151,6 +152,7 @@ SIGNATURES: Mapping[Hypothesis, Signature] = {
         Channel.FAILURE: _failing(Reason.OVERSHOOT),
         Channel.ADVANCE_RATIO: Normal(1.35, 0.2),
     },
+    Hypothesis.HEAD_MISALIGNED: {Channel.FAILURE: _failing(Reason.MISALIGNED)},
 }
 
 PRIOR: Mapping[Hypothesis, float] = {

@@ -38,6 +38,7 @@ class Reason(StrEnum):
     POOR_VIEW = "poor_view"
     UNSTABLE_IMAGES = "unstable_images"
     IMPLAUSIBLE = "implausible"
+    MISALIGNED = "misaligned"
     OUT_OF_REACH = "out_of_reach"
     TILT = "tilt"
     TETHER = "tether"
@@ -286,10 +287,23 @@ class Images:
 
 
 @dataclass(frozen=True, eq=False)
+class Landmarks:
+    """Bits of ground that one camera can tell apart, geometric tier only.
+
+    `names` (n,) tell which is which in another picture and say nothing else; `uv_px` (n, 2) is where they
+    show, in full-frame pixels.
+    """
+
+    names: NDArray[np.int64]
+    uv_px: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Centres:
     """What the geometric tier returns in place of images: marker centres in full-frame pixels.
 
-    Shapes: `uv_px` (2 cameras, 4 markers, 2), NaN where not detected; `sigma_px` (2, 4).
+    Shapes: `uv_px` (2 cameras, 4 markers, 2), NaN where not detected; `sigma_px` (2, 4). `ground` is what a
+    picture (one frame, no LED lit) shows of the landscape, left and right; None for any other shot.
     """
 
     time_s: float
@@ -297,6 +311,7 @@ class Centres:
     uv_px: Array
     sigma_px: Array
     head: HeadReading
+    ground: tuple[Landmarks, Landmarks] | None = None
 
 
 @dataclass(frozen=True, eq=False)

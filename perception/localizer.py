@@ -29,6 +29,7 @@ from perception.body import plc_in_body
 from perception.chain import Chain, body_transform
 from perception.exposure import View, view_of
 from perception.follow_up import pointing_at
+from perception.head_watch import HeadWatch, surprising
 from perception.joint import JointFix
 from perception.localisation import Localisation, empty
 from perception.plausibility import Choice, Rejection
@@ -67,6 +68,7 @@ class LedStereoLocalizer:
         self._devices, self._rig, self._clock = devices, rig, clock
         self._chain = Chain.of(rig)
         self._eyes = Eyes(devices, rig, clock)
+        self._watch = HeadWatch(devices, self._chain, clock)
         self.last: Localisation | None = None
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
@@ -74,7 +76,7 @@ class LedStereoLocalizer:
         deadline = self._clock.now_s + request.budget_s
         if request.quality is Quality.TREND:
             return Routine(self._tendency(request, deadline))
-        return Routine(self._fix(request, deadline))
+        return Routine(self._watched_fix(request, deadline))
 
     def views(self) -> tuple[Seen, ...]:
         """What the last look showed; see executive.ports.Localizer."""
@@ -91,6 +93,24 @@ class LedStereoLocalizer:
         cabin = self._devices.cabin.read()
         plc = body_transform(pose) @ plc_in_body(self._rig.cabin, cabin.arm_rad, cabin.cabin_rad)
         return pointing_at(self._chain, plc.apply(self._chain.markers_plc_m).mean(axis=0))
+
+    # -- the head, before and after a fix
+
+    def _watched_fix(self, request: LocaliseRequest, deadline: float) -> Steps[Outcome[PoseEstimate]]:
+        """A fix by a head that was found well lately, and again where the fix does not fit."""
+        wrong: str | None = None
+        if self._watch.due:
+            wrong = yield from self._watch.look(request.predicted, deadline)
+            if wrong is not None:
+                return Outcome(Reason.MISALIGNED, wrong)
+        self._watch.note, looked = "", self._watch.note
+        outcome = yield from self._fix(request, deadline)
+        if not looked and _doubtful(outcome, request.predicted):
+            wrong = yield from self._watch.look(request.predicted, deadline)
+            looked = self._watch.note
+        if wrong is not None:
+            return Outcome(Reason.MISALIGNED, wrong)
+        return replace(outcome, detail="; ".join(filter(None, (outcome.detail, looked))))
 
     # -- active markers, at rest
 
@@ -223,6 +243,13 @@ class LedStereoLocalizer:
             taken.value.time_s, request.quality, len(self._chain.markers_plc_m), taken.value, 0, why
         )
         return Outcome(Reason.NOT_SEEN, why) if pose is None else Outcome(Reason.DONE, value=pose)
+
+
+def _doubtful(outcome: Outcome[PoseEstimate], predicted: PoseEstimate) -> bool:
+    """Whether an outcome might be the head's fault."""
+    if outcome.ok and outcome.value is not None:
+        return surprising(outcome.value, predicted)
+    return outcome.reason in (Reason.IMPLAUSIBLE, Reason.NOT_SEEN)
 
 
 def _cost(sight: Sight) -> str:

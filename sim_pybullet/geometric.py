@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Shot, Window
+from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Landmarks, Shot, Window
 from sim_pybullet.error_model import JOINT_EXCESS, CentreError, centre_error, joint_chance
 from sim_pybullet.exposing import full_windows
+from sim_pybullet.ground_marks import GroundMarks, nothing_seen
 from sim_pybullet.leds import MarkerOptics, Spot
 from sim_pybullet.projection import View, scene_views
 from sim_pybullet.radiometry import Exposure, spread_reach_px
@@ -17,6 +18,8 @@ from sim_pybullet.scene import SceneState
 CENTROID_SIGMA_PX = 15.0  # motion fragments: where the middle of a moving rover seems to be
 LIGHT_CHANGE, SHIFT_PX = 0.05, 0.5
 """How far a frame may be from the mean of its shot; beyond, the detector refuses the images."""
+LEAST_LIGHT = 0.05
+"""Below, of the light that the exposure was set for, the ground's texture drowns in the noise."""
 _ROVER_MIDDLE_BODY_M = np.array([0.0, 0.0, 0.065])
 
 
@@ -24,13 +27,15 @@ class CentreDeveloper:
     """Answers a shot with `Centres`.
 
     A marker that is hidden, dead, outside the window or not found by chance is NaN; in a coded shot chance
-    finds all or none. A shot in which no LED
-    is lit is one for motion fragments: it answers with the rover's projected middle, the mean over its
-    frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN elsewhere.
+    finds all or none. A shot in which no LED is lit is one for motion fragments: it answers with the rover's
+    projected middle, the mean over its frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN
+    elsewhere. A single such frame is a picture: it shows the `ground`.
     """
 
-    def __init__(self, optics: MarkerOptics, exposure: Exposure, rng: np.random.Generator) -> None:
-        self._optics, self._exposure, self._rng = optics, exposure, rng
+    def __init__(
+        self, optics: MarkerOptics, exposure: Exposure, marks: GroundMarks, rng: np.random.Generator
+    ) -> None:
+        self._optics, self._exposure, self._marks, self._rng = optics, exposure, marks, rng
         self._rig = optics.rig
 
     def develop(
@@ -39,6 +44,9 @@ class CentreDeveloper:
         count = len(self._rig.markers.positions_plc_m)
         uv_px, sigma_px = np.full((2, count, 2), np.nan), np.full((2, count), np.nan)
         windows = shot.windows or full_windows(self._rig)
+        if shot.leds == (0,):
+            left, right = (self._ground(scenes[0], camera, windows[camera]) for camera in (LEFT, RIGHT))
+            return Centres(time_s, shot, uv_px, sigma_px, head, (left, right))
         for camera in (LEFT, RIGHT):
             if any(shot.leds):
                 found = self._markers(shot, scenes, camera, windows[camera])
@@ -70,6 +78,16 @@ class CentreDeveloper:
                 centre = np.array([spot.u_px, spot.v_px]) + noise * (error.sigma_u_px, error.sigma_v_px)
                 found[index] = (centre, error.reported_px)
         return found
+
+    def _ground(self, scene: SceneState, camera: int, window: Window) -> Landmarks:
+        """The ground in a picture; nothing of it where the light is not what it was."""
+        view = scene_views(self._rig, scene)[camera]
+        light = scene.seeing.light + view.lens.veil
+        exposure = self._exposure.under(light)
+        if exposure.ground_e >= exposure.full_well_e or scene.seeing.light < LEAST_LIGHT:
+            return nothing_seen()
+        T = scene.T_site_body
+        return self._marks.seen(view, window, T[:3, :3] @ _ROVER_MIDDLE_BODY_M + T[:3, 3])
 
     def _as_wired(self, scene: SceneState, spots: list[Spot]) -> list[Spot]:
         """The spots in the order in which the sequencer means to light them; one always lit shows nothing."""

@@ -40,6 +40,7 @@ LONGEST_SETTLING_STEPS = 240
 PHYSICS_MARGIN_M = 1.2  # how much ground beyond the off-track margins is solid
 SPOOL_HEIGHT_M = 0.3
 TRUTH_EVERY_S = 60.0
+DRAGGED_M = 0.001  # a rover that sways less after a stop is not being dragged
 LEAST_GRIP = 0.02  # of the weight: even with its belly on a rock some grouser drags
 STILL = PlaneRate()
 
@@ -193,8 +194,13 @@ class World:
             self._asleep = True
 
     def _settle_down(self) -> None:
+        """Step until all is at rest; a tether that drags the rover along slackens with that."""
+        pulled_at_m = self.anchor() if self._pull.any() else None
         while not self._asleep:
             self._step(STILL)
+            if pulled_at_m is not None and np.linalg.norm(self.anchor() - pulled_at_m) > DRAGGED_M:
+                pulled_at_m = self.anchor()
+                self._pull = self.tether.pull(pulled_at_m)
 
     def anchor(self) -> Array:
         """Where the tether is tied to the rover, in `site`."""

@@ -151,11 +151,13 @@ class InOut(_Written[T]):
 class Trace:
     """What one tree did last: who was entered and not yet terminated, and the last failure of a leaf.
 
+    `alarm`, once set, fails the next leaf found under way, whatever it does, and is cleared by that.
     `note` is called at every end of a leaf: (path, outcome).
     """
 
     entered: dict[str, Leaf] = field(default_factory=dict)
     last_failure: tuple[str, Outcome[object]] | None = None
+    alarm: Outcome[object] | None = None
     note: Callable[[str, Outcome[object]], None] = lambda path, outcome: None
 
     def fail(self, path: str, outcome: Outcome[object]) -> None:
@@ -185,6 +187,7 @@ class Leaf(Behaviour):
     """A leaf of the tree. Subclasses declare ports and write `begin`, `step` and, if needed, `halt`."""
 
     outcomes: ClassVar[tuple[Reason, ...]] = (Reason.DONE,)
+    heeds_alarm: ClassVar[bool] = True
 
     def __init__(
         self, name: str, path: str, services: Services, bindings: Mapping[str, Binding], trace: Trace
@@ -219,7 +222,7 @@ class Leaf(Behaviour):
 
     def update(self) -> Status:
         with Naming(self.path):
-            outcome = self.step()
+            outcome = self._alarmed() or self.step()
         if outcome is None:
             self.feedback_message = ""
             return Status.RUNNING
@@ -229,6 +232,15 @@ class Leaf(Behaviour):
             return Status.FAILURE
         self.trace.note(self.path, outcome)
         return Status.SUCCESS
+
+    def _alarmed(self) -> Outcome[object] | None:
+        """What ends a leaf that is under way from outside. One that answers at once never is."""
+        alarm = self.trace.alarm
+        if alarm is None or not self.heeds_alarm or self.status is not Status.RUNNING:
+            return None
+        self.trace.alarm = None
+        self.services.journal.assessment(self.services.classification.failed(alarm))
+        return alarm
 
     def terminate(self, new_status: Status) -> None:
         if self.trace.entered.pop(self.path, None) is not None or new_status is not Status.INVALID:

@@ -14,6 +14,7 @@ class CallForHelp(ActionLeaf):
     """
 
     outcomes = (Reason.NO_STRATEGY,)
+    heeds_alarm = False  # whatever happens, ground is told
 
     def request(self) -> Action[str]:
         self.services.devices.tracks.stop()

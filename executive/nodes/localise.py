@@ -25,6 +25,7 @@ class Localise(ActionLeaf):
         Reason.POOR_VIEW,
         Reason.UNSTABLE_IMAGES,
         Reason.IMPLAUSIBLE,
+        Reason.MISALIGNED,
         Reason.OUT_OF_REACH,
         Reason.TIMEOUT,
         Reason.DEVICE,

@@ -12,6 +12,8 @@ class Wait(Leaf):
 
     duration = In(DURATION, "how long to wait")
 
+    outcomes = (Reason.DONE, Reason.DEVICE)
+
     def begin(self) -> None:
         self.until_ticks = self.services.clock.ticks + self.services.clock.ticks_for(self.duration)
 

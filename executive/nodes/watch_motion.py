@@ -12,12 +12,15 @@ from executive.prediction import unusable
 from executive.types import Outcome, PoseEstimate, Quality, Reason
 from executive.values import LENGTH, NUMBER
 
+MOST_ASTRAY = 2  # tendencies in a row
+
 
 class WatchMotion(Leaf):
     """Supervise a drive by motion fragments: follow with the head, fail when the tendency is wrong.
 
     Never succeeds by itself: run it in a parallel beside the drive. A frame pair that shows nothing is
-    no evidence; the precise check after the drive decides.
+    no evidence, and one that shows the rover elsewhere may show something else that moves: two in a row
+    must say so. The precise check after the drive decides.
     """
 
     gate = In[float](NUMBER, "standard deviations that the tendency may be off", default=4.0)
@@ -30,6 +33,7 @@ class WatchMotion(Leaf):
 
     def begin(self) -> None:
         self._predictions: dict[float, PoseEstimate] = {}
+        self._astray = 0
 
     def step(self) -> Outcome[object] | None:
         predicted = self.services.classification.predicted()
@@ -60,7 +64,9 @@ class WatchMotion(Leaf):
         beyond = max(0.0, 1.0 - self.allowance / max(float(np.hypot(*off)), 1e-9)) * off
         spread = seen.covariance[:2, :2] + predicted.covariance[:2, :2]
         distance = math.sqrt(float(beyond @ np.linalg.solve(spread, beyond)))
-        if distance <= self.gate:
+        self._astray = 0 if distance <= self.gate else self._astray + 1
+        if not self._astray:
             self.services.journal.estimate(seen)
+        if self._astray < MOST_ASTRAY:
             return None
         return Outcome(Reason.UNEXPECTED, f"seen {np.hypot(*off) * 1e3:.0f} mm from the prediction")

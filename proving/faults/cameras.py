@@ -5,6 +5,7 @@ What is altered is decided when a shot is asked for; the time stamps stay honest
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -14,7 +15,7 @@ from pydantic import Field
 
 from executive.faults import Cue, FaultSpec
 from executive.ports import Action, Cameras, Devices
-from executive.types import LEFT, RIGHT, Centres, Images, Outcome, Reason, Shot
+from executive.types import LEFT, RIGHT, Centres, Images, Landmarks, Outcome, Reason, Shot
 from executive.units import Duration
 from proving.faults.altered import Altered, Counted, Held
 from proving.faults.parameters import SIDES, Nothing, OneCamera, Parameters
@@ -54,10 +55,30 @@ def differ(before: Frames, after: Frames) -> bool:
     """Whether two answers to the same shot say something different."""
     if isinstance(before, Centres) and isinstance(after, Centres):
         same = np.array_equal(before.uv_px, after.uv_px, equal_nan=True)
-        return not (same and np.array_equal(before.sigma_px, after.sigma_px, equal_nan=True))
+        same = same and np.array_equal(before.sigma_px, after.sigma_px, equal_nan=True)
+        return not (same and _same_ground(before, after))
     if isinstance(before, Images) and isinstance(after, Images):
         return not all(np.array_equal(b, a) for b, a in zip(before.counts, after.counts, strict=True))
     return True
+
+
+def _same_ground(before: Centres, after: Centres) -> bool:
+    pairs = zip(before.ground or (), after.ground or (), strict=False)
+    return all(np.array_equal(b.names, a.names) and np.array_equal(b.uv_px, a.uv_px) for b, a in pairs)
+
+
+def with_ground(answer: Centres, camera: int, change: Callable[[Landmarks], Landmarks]) -> Centres:
+    """The same centres with what one camera shows of the ground changed, if anything."""
+    if answer.ground is None:
+        return answer
+    left, right = answer.ground
+    ground = (change(left), right) if camera == LEFT else (left, change(right))
+    return replace(answer, ground=ground)
+
+
+def no_ground(landmarks: Landmarks) -> Landmarks:
+    """None of these."""
+    return Landmarks(landmarks.names[:0], landmarks.uv_px[:0])
 
 
 def with_counts(answer: Images, camera: int, counts: Counts) -> Images:
@@ -88,7 +109,7 @@ class CameraDead(CameraFault):
     def centres(self, answer: Centres, level: float) -> Centres:
         uv_px = answer.uv_px.copy()
         uv_px[self._camera] = np.nan
-        return replace(answer, uv_px=uv_px)
+        return with_ground(replace(answer, uv_px=uv_px), self._camera, no_ground)
 
 
 class FrozenFrame(CameraFault):
@@ -149,7 +170,9 @@ class SwappedCameras(CameraFault):
             return outcome
         after: Frames
         if isinstance(answer, Centres):
-            after = replace(answer, shot=shot, uv_px=answer.uv_px[::-1], sigma_px=answer.sigma_px[::-1])
+            ground = None if answer.ground is None else (answer.ground[RIGHT], answer.ground[LEFT])
+            uv_px, sigma_px = answer.uv_px[::-1], answer.sigma_px[::-1]
+            after = replace(answer, shot=shot, uv_px=uv_px, sigma_px=sigma_px, ground=ground)
         else:
             windows, counts = answer.windows[::-1], answer.counts[::-1]
             after = replace(answer, shot=shot, windows=windows, counts=counts)

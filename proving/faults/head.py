@@ -87,7 +87,7 @@ HEAD_ENCODER_OFFSET = FaultSpec(
     "The head's encoders are off, so that it points elsewhere than it says.",
     HeadOffset,
     HeadEncoderOffset,
-    "localisation_outlier",
+    "head_misaligned",
     category="head",
     graded=True,
 )

@@ -12,9 +12,9 @@ from pydantic import Field
 from executive.faults import Cue, FaultSpec
 from executive.ports import Devices
 from executive.rig import RigCalibration
-from executive.types import Array, Centres, Images, Window
+from executive.types import LEFT, RIGHT, Array, Centres, Images, Landmarks, Window
 from executive.units import Fraction
-from proving.faults.cameras import CameraFault, Counts, with_counts
+from proving.faults.cameras import CameraFault, Counts, no_ground, with_counts, with_ground
 from proving.faults.parameters import SIDES, OneCamera, Parameters
 
 RIG = RigCalibration()
@@ -55,7 +55,11 @@ class ExposureOff(CameraFault):
         factor = self._factor**level
         sigma_px = answer.sigma_px / min(factor, 1.0)
         lost = (sigma_px > FAINTEST_SIGMA_PX) & np.any(answer.shot.leds) | (factor >= SATURATION_FACTOR)
-        return replace(answer, uv_px=np.where(lost[..., None], np.nan, answer.uv_px), sigma_px=sigma_px)
+        uv_px = np.where(lost[..., None], np.nan, answer.uv_px)
+        after = replace(answer, uv_px=uv_px, sigma_px=sigma_px)
+        if factor >= SATURATION_FACTOR:
+            after = with_ground(with_ground(after, LEFT, no_ground), RIGHT, no_ground)
+        return after
 
 
 class HotPixelCount(Parameters):
@@ -127,7 +131,8 @@ class CalibrationDrift(CameraFault):
     def centres(self, answer: Centres, level: float) -> Centres:
         M, uv_px = self._affine(level), answer.uv_px.copy()
         uv_px[self._camera] = uv_px[self._camera] @ M[:, :2].T + M[:, 2]
-        return replace(answer, uv_px=uv_px)
+        moved = replace(answer, uv_px=uv_px)
+        return with_ground(moved, self._camera, lambda g: Landmarks(g.names, g.uv_px @ M[:, :2].T + M[:, 2]))
 
 
 def _warped(stack: Counts, affine: Array, window: Window) -> Counts:
@@ -159,7 +164,7 @@ CALIBRATION_DRIFT = FaultSpec(
     "One camera's image is shifted and scaled against its calibration.",
     Drift,
     CalibrationDrift,
-    "localisation_outlier",
+    "head_misaligned",
     category="cameras",
     graded=True,
 )

@@ -22,6 +22,7 @@ FILE = click.Path(path_type=Path)
 @click.option("--tier", type=click.Choice(["full", "geometric"]), help="Tier of every run.")
 @click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Replace a value in every run.")
 @click.option("--excuses", type=FILE, help="A file that says which mutants are equivalent, and why.")
+@click.option("--believe", is_flag=True, help="Do not try mutants that are said to be equivalent.")
 @click.option("--min", "least", metavar="SHARE", help="Fail if fewer mutants are noticed, such as 85 %.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--quiet", is_flag=True, help="No progress on stderr.")
@@ -35,6 +36,7 @@ def mutate(
     tier: str | None,
     overrides: tuple[str, ...],
     excuses: Path | None,
+    believe: bool,
     least: str | None,
     as_json: bool,
     quiet: bool,
@@ -54,7 +56,7 @@ def mutate(
 
     wanted = share(least)
     equivalents = read_equivalents(excuses) if excuses else Equivalents()
-    options = mutation.MutationOptions(slots, tier, overrides, only, limit, seed)
+    options = mutation.MutationOptions(slots, tier, overrides, only, limit, seed, believe)
     path = Path(tree)
     name = path if path.is_file() or "/" in tree else tree
     score = mutation.mutate(name, paths, options, equivalents, Telling(quiet or as_json))

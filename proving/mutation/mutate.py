@@ -20,7 +20,10 @@ from proving.suite.collect import Collected, collect
 
 @dataclass(frozen=True)
 class MutationOptions:
-    """What the command line may say. `only` are names of trees; `limit` draws so many mutants at random."""
+    """What the command line may say. `only` are names of trees; `limit` draws so many mutants at random.
+
+    To `believe` is not to try what is said to be equivalent.
+    """
 
     slots: int = 1
     tier: str | None = None
@@ -28,6 +31,7 @@ class MutationOptions:
     only: tuple[str, ...] = ()
     limit: int | None = None
     seed: int = 0
+    believe: bool = False
 
 
 @dataclass(frozen=True)
@@ -72,15 +76,17 @@ def mutate(
     collected = [_as_run(each, options) for each in collect(paths)]
     forest = Forest.of(tree, load_strategies())
     mutants = chosen(forest, options)
+    spared = equivalents.of(mutants)
+    tried = [m for m in mutants if not (options.believe and m in spared)]
     watch = Stopwatch()
     with TemporaryDirectory(prefix="mutants-") as folder:
         court = Court(Path(folder), options.tier, options.overrides, forest.universe)
-        docket = _Docket(court, collected, mutants)
+        docket = _Docket(court, collected, tried)
         for news in conduct(docket, options.slots):
             docket.hear(news)
-            tell(news, len(collected) if isinstance(news, Baseline) else len(mutants))
-    found = tuple(docket.found[mutant] for mutant in mutants)
-    return Score(docket.suite, found, equivalents.of(mutants), watch.elapsed_s())
+            tell(news, len(collected) if isinstance(news, Baseline) else len(tried))
+    found = tuple(docket.found.get(mutant, Found(mutant, None, "not tried", 0, False)) for mutant in mutants)
+    return Score(docket.suite, found, spared, watch.elapsed_s())
 
 
 class _Docket(Iterator[Trial[Baseline | Found]]):

@@ -147,13 +147,13 @@ class LanderSettling(WorldFault[Settling]):
         return done.frames > 0
 
 
-OUTLIER = Hypothesis.LOCALISATION_OUTLIER
+MISALIGNED = Hypothesis.HEAD_MISALIGNED
 PAN_LOCKED = spec("pan_locked", PanLocked, Nothing, Hypothesis.LOST_ROVER, "head")
 TILT_LOCKED = spec("tilt_locked", TiltLocked, Nothing, Hypothesis.LOST_ROVER, "head")
 HEAD_SLOW = spec("head_slow", HeadSlow, Slowness, None, "head", graded=True)
-HEAD_OFFSET = spec("head_offset", HeadOffset, Offset, OUTLIER, "head", graded=True)
-HEAD_BACKLASH = spec("head_backlash", HeadBacklash, Play, OUTLIER, "head", graded=True)
-HEAD_STEP_LOSS = spec("head_step_loss", HeadStepLoss, Loss, OUTLIER, "head")
+HEAD_OFFSET = spec("head_offset", HeadOffset, Offset, MISALIGNED, "head", graded=True)
+HEAD_BACKLASH = spec("head_backlash", HeadBacklash, Play, MISALIGNED, "head", graded=True)
+HEAD_STEP_LOSS = spec("head_step_loss", HeadStepLoss, Loss, MISALIGNED, "head")
 LANDER_SETTLING = spec(
-    "lander_settling", LanderSettling, Settling, OUTLIER, "head", graded=True, lasting=True
+    "lander_settling", LanderSettling, Settling, MISALIGNED, "head", graded=True, lasting=True
 )

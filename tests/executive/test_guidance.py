@@ -95,3 +95,11 @@ def test_a_lazy_track_is_fed_forward() -> None:
 def test_a_target_passed_nearby_is_an_overshoot() -> None:
     segment = replace(SEGMENT, end=Point(0.5, 0.0))
     assert leg(pose(0.55, 0.0, 0.0), segment).reason is Reason.OVERSHOOT
+
+
+def test_a_turn_is_cut_short_to_as_much_belt_travel_as_there_is_room() -> None:
+    turn = guidance.Belts(-0.3, 0.3)
+    assert guidance.within_room(turn, 0.05) == guidance.Belts(-0.05, 0.05)
+    assert guidance.within_room(turn, 0.4) == turn
+    assert guidance.within_room(turn, -0.02) == guidance.Belts(0.0, 0.0)
+    assert guidance.within_room(guidance.Belts(0.0, 0.0), 0.0) == guidance.Belts(0.0, 0.0)

@@ -14,7 +14,7 @@ from executive.backends import BackendRequest
 from executive.classification import Classification
 from executive.journal import RunJournal
 from executive.nodes import LEAVES
-from executive.nodes.base import Constant, Slot, Store, Trace
+from executive.nodes.base import Constant, Leaf, Slot, Store, Trace
 from executive.nodes.services import Services
 from executive.pool import Pool
 from executive.prediction import quat_from_heading_tilt
@@ -62,6 +62,7 @@ class Bench:
         self.localizer: Any = OverheadLocalizer(self.backend.devices, self.backend.rig, self.backend.clock)
         self.store, self.trace = Store(), Trace()
         self.classification = self.known(0.0)
+        self.leaves: dict[str, Leaf] = {}
 
     def known(self, y_m: float, heading_rad: float = 0.0) -> Classification:
         """A classification that believes to be at (2, y) with small uncertainty."""
@@ -75,7 +76,7 @@ class Bench:
         return Classification(prior, self.backend.rig, self.backend.clock)
 
     def run(self, kind: str, values: Mapping[str, object]) -> Outcome[object]:
-        """Tick the leaf to its end; its outcome."""
+        """Tick the leaf to its end; its outcome. The same one if it ran before."""
         services = Services(
             clock=self.backend.clock,
             devices=self.backend.devices,
@@ -93,7 +94,9 @@ class Bench:
             else:
                 bindings[port.name] = Slot(self.store, port.name)
                 bindings[port.name].write(given.get(port.name))
-        leaf = LEAVES[kind](kind, kind, services, bindings, self.trace)
+        if kind not in self.leaves:
+            self.leaves[kind] = LEAVES[kind](kind, kind, services, bindings, self.trace)
+        leaf = self.leaves[kind]
         ended: list[Outcome[object]] = []
         self.trace.note = lambda path, outcome: ended.append(outcome)
         for _ in range(PATIENCE_TICKS):
@@ -102,7 +105,6 @@ class Bench:
             if ended:
                 break
             self.backend.advance()
-        self.recorder.close()
         (outcome,) = ended
         return outcome
 
@@ -154,6 +156,17 @@ def anomalous(bench: Bench) -> None:
 
 def turned(bench: Bench) -> None:
     bench.classification.observed_turn_ratio = 0.8
+
+
+def turned_in_vain(bench: Bench) -> None:
+    """Turns that end at once and leave everything as it was, six of them done."""
+    bench.device_ends("tracks", "drive", Reason.DONE)
+    for _ in range(6):
+        assert bench.run("turn_towards", DRIVES["turn_towards"]).ok
+
+
+def alarmed(bench: Bench) -> None:
+    bench.trace.alarm = Outcome(Reason.DEVICE, "as told")
 
 
 def jumped(bench: Bench) -> None:
@@ -212,7 +225,9 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("start_here", Reason.OFF_TRACK, believed_at(0.6), {"route": (SEGMENT,)}),
     ("take_picture", Reason.DONE, nothing, {}),
     ("take_picture", Reason.DEVICE, ends("cameras", "take", Reason.DEVICE), {}),
+    ("turn_towards", Reason.OFF_HEADING, turned_in_vain, {"target": ASIDE}),
     ("wait", Reason.DONE, nothing, {"duration": 3.0}),
+    ("wait", Reason.DEVICE, alarmed, {"duration": 3.0}),
     ("watch_motion", Reason.UNEXPECTED, jumped, {}),
     ("waypoint_reached", Reason.DONE, nothing, {"segment": ENDS_HERE}),
     ("waypoint_reached", Reason.UNEXPECTED, nothing, {}),
@@ -238,6 +253,7 @@ def test_a_leaf_ends_for_the_reason_it_declares(
     bench = Bench(tmp_path)
     setup(bench)
     outcome = bench.run(kind, values)
+    bench.recorder.close()
     assert outcome.reason is reason
     assert bench.trace.entered == {}
     assert not bench.backend.devices.tracks.read().moving

@@ -26,6 +26,8 @@ from perception.pose import roll_pitch
 from perception.rotation import quat_from_matrix
 from tests.perception.synthetic import Scene, background_e, marker_electrons, observed, sequence, spot
 
+PICTURE = (0,)  # of the ground, to watch the head by; this robot's shows none
+
 
 @dataclass
 class After:
@@ -59,6 +61,7 @@ class Robot:
     brightness: float = 1.0
     light_per_frame: float = 0.0
     shots: list[Shot] = field(default_factory=list)
+    pictures: list[Shot] = field(default_factory=list)
     moves: int = 0
     spoil: object = None  # callable on a stack of counts
 
@@ -94,7 +97,7 @@ class Robot:
         return self._later(3.0, Outcome(Reason.DONE, value=self.head_reading()))
 
     def take(self, shot: Shot):
-        self.shots.append(shot)
+        (self.pictures if shot.leds == PICTURE else self.shots).append(shot)
         end = len(shot.leds) * shot.cadence_s
         true = ChainState(
             self.state.site_body,

@@ -191,6 +191,15 @@ def test_an_equivalent_mutant_may_live(tmp_path):
     assert spared.problems(alive, complete=True) == []
 
 
+def test_an_equivalent_mutant_that_is_believed_is_not_tried(suite, tmp_path):
+    spared = equivalents(tmp_path, "cabin_reposing/*")
+    options = MutationOptions(only=("cabin_reposing",), believe=True)
+    score = mutate("navigate", [suite / "plain.yaml"], options, spared)
+    assert score.found
+    assert {(f.runs, f.why) for f in score.found} == {(0, "not tried")}
+    assert score.survivors == []
+
+
 def test_an_equivalent_mutant_that_is_noticed_is_a_problem(tmp_path):
     (problem,) = equivalents(tmp_path, "*one*").problems([found("drop one (1)", Path("s.yaml"))], True)
     assert problem.line == 3

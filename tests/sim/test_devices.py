@@ -215,6 +215,20 @@ def test_jammed_tether_holds_the_rover_back(world_of: WorldMaker) -> None:
     assert 0.4 * weight_n < world.tether.tension_n < 0.9 * weight_n
 
 
+def test_a_rover_that_the_tether_drags_back_comes_no_farther_than_the_tether_was_stretched(
+    world_of: WorldMaker,
+) -> None:
+    world = world_of(plain(soil="gravel"))
+    drive(world, 0.1, 0.1)
+    stretched_m = 0.04  # pulls with 8 N, and the rover weighs about 10
+    world.tether.jammed = True
+    world.tether.length_m = world.tether.way_m(world.anchor()) - stretched_m
+    before_m = world.body.pose()[0]
+    world.wake()
+    world.advance()
+    assert 0.0 < np.linalg.norm(world.body.pose()[0] - before_m) < stretched_m
+
+
 def test_a_tether_round_a_rock_holds_back_but_never_pulls(world_of: WorldMaker) -> None:
     world = world_of(plain(soil="gravel"))
     drive(world, 0.1, 0.1)
