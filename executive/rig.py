@@ -17,9 +17,10 @@ ARC_MINUTE_RAD = math.pi / (180 * 60)
 
 @dataclass(frozen=True)
 class CameraCalibration:
-    """One camera. `position_ih_m` and `yaw_ih_rad` (left positive) place it in frame `ih`.
+    """One camera. `position_ih_m`, yaw (left positive), pitch (down positive) and roll place it in `ih`.
 
-    Camera axes at yaw 0: z along ih x (forward), x along -ih y (right), y along -ih z (down).
+    R_ih_cam = Rz(yaw) Ry(pitch) Rx(roll) A; at zero, A: z along ih x (forward), x along -ih y (right), y
+    along -ih z (down).
     `distortion` is (k1, k2, p1, p2, k3), the Brown-Conrady model as OpenCV defines it.
     """
 
@@ -30,19 +31,26 @@ class CameraCalibration:
     distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
     position_ih_m: Vec3 = (0.0, 0.0, 0.0)
     yaw_ih_rad: float = 0.0
+    pitch_ih_rad: float = 0.0
+    roll_ih_rad: float = 0.0
 
 
 @dataclass(frozen=True)
 class HeadCalibration:
     """The pan-tilt unit: `ih` sits at its crossing axes, `mast_height_m` over the site origin.
 
-    R_site_ih = Rz(pan) Ry(tilt): pan positive to the left, tilt positive downwards.
+    R_site_ih = Ry(lean[1]) Rx(lean[0]) Rz(pan + pan_zero) Rx(axes_skew) Ry(tilt + tilt_zero): pan positive to
+    the left, tilt positive downwards, both as the encoders read them.
     Accuracies are the half-widths of a uniform error, drawn anew at each move (paper, table 1).
     """
 
     mast_height_m: float = 1.5
     pan_accuracy_rad: float = 0.94 * ARC_MINUTE_RAD
     tilt_accuracy_rad: float = 0.465 * ARC_MINUTE_RAD
+    pan_zero_rad: float = 0.0
+    tilt_zero_rad: float = 0.0
+    lean_rad: Vec2 = (0.0, 0.0)
+    axes_skew_rad: float = 0.0
     pan_limit_rad: float = math.radians(175.0)
     tilt_limits_rad: Vec2 = (math.radians(-30.0), math.radians(80.0))
     speed_rad_s: float = math.radians(3.0)

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from executive.rig import CameraCalibration, RigCalibration
 from executive.types import Array
 from perception.checks import as_array
-from perception.rotation import rot_z
+from perception.rotation import rot_x, rot_y, rot_z
 
 # Columns: camera x (right), y (down), z (forward) in ih axes (x forward, y left, z up).
-_IH_CAM_AT_YAW_0 = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+_IH_CAM_UNTURNED = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 _UNDISTORT_STEPS = 12
 _MIN_DEPTH_M = 1e-6
@@ -38,7 +38,7 @@ class StereoModel:
     def of(cls, rig: RigCalibration) -> StereoModel:
         cams: tuple[CameraCalibration, CameraCalibration] = rig.cameras
         return cls(
-            rotation_cam_ih=np.stack([(rot_z(c.yaw_ih_rad) @ _IH_CAM_AT_YAW_0).T for c in cams]),
+            rotation_cam_ih=np.stack([_rotation_ih_cam(c).T for c in cams]),
             position_ih_m=np.array([c.position_ih_m for c in cams]),
             focal_px=np.array([c.focal_px for c in cams]),
             principal_px=np.array([c.principal_px for c in cams]),
@@ -81,6 +81,11 @@ class StereoModel:
             low = (uv_px >= margin_px - 0.5).all(axis=-1)
             high = (uv_px <= self.size_px[:, None, :] - 0.5 - margin_px).all(axis=-1)
         return np.asarray(low & high)
+
+
+def _rotation_ih_cam(camera: CameraCalibration) -> Array:
+    turned = rot_z(camera.yaw_ih_rad) @ rot_y(camera.pitch_ih_rad) @ rot_x(camera.roll_ih_rad)
+    return np.asarray(turned @ _IH_CAM_UNTURNED, dtype=np.float64)
 
 
 def distort(normal: Array, k: Array) -> tuple[Array, Array]:

@@ -15,7 +15,8 @@ from executive.rig import RigCalibration
 from executive.types import Array, PoseEstimate, Vec2
 from perception.body import Transform, plc_in_body, points_in_body
 from perception.camera import StereoModel
-from perception.rotation import exp_map, matrix_from_quat, rot_y, rot_y_rate, rot_z, rot_z_rate, skew
+from perception.head import head_rates, site_ih
+from perception.rotation import exp_map, matrix_from_quat, skew
 
 STATE_SIZE = 10
 _SIGMA_FLOOR_RAD = 1e-7  # an encoder said to be perfect must not make the normal equations infinite
@@ -51,8 +52,7 @@ class Chain:
 
     def site_ih(self, head_rad: Vec2) -> Transform:
         """Pose of the head in site (executive.rig.HeadCalibration)."""
-        mast = np.array([0.0, 0.0, self.rig.head.mast_height_m])
-        return Transform(rot_z(head_rad[0]) @ rot_y(head_rad[1]), mast)
+        return site_ih(self.rig.head, head_rad)
 
     def site_plc(self, state: ChainState) -> Transform:
         """Pose of the marker plane in site."""
@@ -75,16 +75,15 @@ class Chain:
         self, points_site_m: Array, head_rad: Vec2, arms_site_m: Array, by_joints: Array
     ) -> tuple[Array, Array]:
         """Pixels and Jacobian of points (n, 3) in site, at arms (n, 3) from the body, by_joints (n, 3, 2)."""
-        pan, tilt = head_rad
-        Z, Y = rot_z(pan), rot_y(tilt)
         head = self.site_ih(head_rad)
+        by_pan, by_tilt = head_rates(self.rig.head, head_rad)
         from_mast = points_site_m - head.position_m
         uv, by_ih = self.model.project_with_jacobian(from_mast @ head.rotation)
         by_state = np.empty((len(points_site_m), 3, STATE_SIZE))
         by_state[:, :, :3] = head.rotation.T
         by_state[:, :, 3:6] = -head.rotation.T @ skew(arms_site_m)
-        by_state[:, :, 6] = from_mast @ (rot_z_rate(pan) @ Y)
-        by_state[:, :, 7] = from_mast @ (Z @ rot_y_rate(tilt))
+        by_state[:, :, 6] = from_mast @ by_pan
+        by_state[:, :, 7] = from_mast @ by_tilt
         by_state[:, :, 8:] = head.rotation.T @ by_joints
         J: Array = by_ih @ by_state
         return uv, J

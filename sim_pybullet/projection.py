@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from executive.rig import CameraCalibration, RigCalibration
+from executive.rig import CameraCalibration, HeadCalibration, RigCalibration
 from executive.types import Array
 from sim_pybullet.scene import SceneState
 from sim_pybullet.seeing import CLEAN, Lens, Seeing
@@ -76,7 +76,7 @@ def undistort(camera: CameraCalibration, xd: Array, yd: Array) -> tuple[Array, A
 
 
 def head_views(rig: RigCalibration, pan_rad: float, tilt_rad: float) -> tuple[View, View]:
-    """Both cameras for these *true* head angles; the mast's foot is the site's origin."""
+    """Both cameras for these *true* readings of perfect encoders; the mast's foot is the site's origin."""
     left, right = (_view(rig, camera, pan_rad, tilt_rad) for camera in rig.cameras)
     return left, right
 
@@ -100,9 +100,24 @@ def _settled(view: View, seeing: Seeing) -> View:
 
 
 def _view(rig: RigCalibration, camera: CameraCalibration, pan_rad: float, tilt_rad: float) -> View:
-    R_site_ih = about_z(pan_rad) @ about_y(tilt_rad)
+    R_site_ih = _head_in_site(rig.head, pan_rad, tilt_rad)
+    R_ih_cam = about_z(camera.yaw_ih_rad) @ about_y(camera.pitch_ih_rad) @ about_x(camera.roll_ih_rad)
     position = np.array([0.0, 0.0, rig.head.mast_height_m]) + R_site_ih @ np.array(camera.position_ih_m)
-    return View(camera, R_site_ih @ about_z(camera.yaw_ih_rad) @ _CAMERA_AXES_IH, position)
+    return View(camera, R_site_ih @ R_ih_cam @ _CAMERA_AXES_IH, position)
+
+
+def _head_in_site(head: HeadCalibration, pan_rad: float, tilt_rad: float) -> Array:
+    """R_site_ih: the leaning mast, pan, axes out of square, tilt."""
+    mast = about_y(head.lean_rad[1]) @ about_x(head.lean_rad[0])
+    panned = mast @ about_z(pan_rad + head.pan_zero_rad)
+    turned: Array = panned @ about_x(head.axes_skew_rad) @ about_y(tilt_rad + head.tilt_zero_rad)
+    return turned
+
+
+def about_x(angle_rad: float) -> Array:
+    """Rotation about x, shape (3, 3)."""
+    c, s = np.cos(angle_rad), np.sin(angle_rad)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
 
 
 def about_z(angle_rad: float) -> Array:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from executive.rig import CabinCalibration, CameraCalibration, RigCalibration
+from executive.rig import CabinCalibration, CameraCalibration, HeadCalibration, RigCalibration
 from perception.body import Transform, body_from_plc, plc_in_body
 from perception.camera import StereoModel, triangulate
 from perception.chain import Chain, ChainState
@@ -19,6 +19,15 @@ BENT_RIG = RigCalibration(
         CameraCalibration(distortion=LENS, position_ih_m=(0.02, 0.26, 0.01), yaw_ih_rad=-0.08),
         CameraCalibration(distortion=LENS, position_ih_m=(0.0, -0.25, 0.0), yaw_ih_rad=0.09, focal_px=2480.0),
     )
+)
+TURNED_RIG = RigCalibration(
+    cameras=(
+        CameraCalibration(
+            position_ih_m=(0.0, 0.25, 0.0), yaw_ih_rad=-0.08, pitch_ih_rad=0.01, roll_ih_rad=0.02
+        ),
+        CameraCalibration(position_ih_m=(0.0, -0.25, 0.0), yaw_ih_rad=0.09, pitch_ih_rad=-0.02),
+    ),
+    head=HeadCalibration(pan_zero_rad=0.02, tilt_zero_rad=-0.01, lean_rad=(0.03, -0.02), axes_skew_rad=0.01),
 )
 angle = st.floats(-3.0, 3.0)
 vector = st.tuples(angle, angle, angle).map(np.array)
@@ -71,7 +80,7 @@ def test_triangulation_refuses_wrong_shapes(uv):
         triangulate(StereoModel.of(RigCalibration()), uv)
 
 
-@pytest.mark.parametrize("rig", [RigCalibration(), BENT_RIG])
+@pytest.mark.parametrize("rig", [RigCalibration(), BENT_RIG, TURNED_RIG])
 def test_chain_jacobian_matches_central_differences(rig):
     chain, state = Chain.of(rig), scene(3.0, (0.1, -0.2, 2.0), (0.4, -0.3), rig=rig).state
     _, J = chain.project(state)

@@ -1,0 +1,22 @@
+"""In-situ calibration of the head from views of rover and terrain: docs/calibration.md."""
+
+from perception.calibration.parameters import NAMES, PARAMETERS, Parameter, changed_rig
+from perception.calibration.result import Calibrated, Direction
+from perception.calibration.solve import calibrate
+from perception.calibration.survey import Landmark, Look, PointImages, RoverImages, Station, Survey
+
+__all__ = [
+    "NAMES",
+    "PARAMETERS",
+    "Calibrated",
+    "Direction",
+    "Landmark",
+    "Look",
+    "Parameter",
+    "PointImages",
+    "RoverImages",
+    "Station",
+    "Survey",
+    "calibrate",
+    "changed_rig",
+]
