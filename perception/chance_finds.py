@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.special import log_ndtr, ndtri_exp
+from scipy.special import ndtri_exp
 
 from executive.types import Array
 from perception.chain import STATE_SIZE, Chain, ChainState
@@ -41,9 +41,10 @@ def joint_threshold(
     if not (math.isfinite(volume) and volume > 0 and 0 < rate < 1):
         raise ValueError(f"got a volume of {volume} at rate {rate}, expected it positive, in (0, 1)")
     unit = unit_information(chain, state, spread)
+    read = _read(state, readings)
     snr = _FIRST_GUESS
     for _ in range(_ROUNDS):
-        snr = -float(ndtri_exp(math.log(rate) - log_distinct_poses(unit, _read(state, readings), volume, snr)))
+        snr = -float(ndtri_exp(math.log(rate) - log_distinct_poses(unit, read, volume, snr)))
     return snr
 
 

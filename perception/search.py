@@ -70,8 +70,8 @@ def search(
     spread: Spread,
     widen: float,
     at_most: int,
-) -> tuple[list[Hypothesis], int]:
-    """The best hypotheses, one a pattern, best first, and the volume of place and heading [m2 rad] searched."""
+) -> tuple[list[Hypothesis], float]:
+    """The best hypotheses, one a pattern, best first; the volume of place and heading searched [m2 rad]."""
     lattice = _Lattice.of(chain, expectation, _STEP_WIDTHS * spread.width_px, widen)
     found: list[Hypothesis] = []
     for state in lattice.patterns(expectation.state):
