@@ -99,7 +99,9 @@ class Setting:
     tilt_rad: tuple[float, float]
 
 
-def draw(range_m: float, rng: np.random.Generator, rig: RigCalibration) -> Setting:
+def draw(
+    range_m: float, rng: np.random.Generator, rig: RigCalibration, off: tuple[float, float] = (OFF_M, OFF_RAD)
+) -> Setting:
     """A rover at about `range_m` that drove away from the head, cabin tilted to it as far as joints allow."""
     chain = Chain.of(rig)
     ground = np.sqrt(range_m**2 - 1.35**2)
@@ -110,12 +112,13 @@ def draw(range_m: float, rng: np.random.Generator, rig: RigCalibration) -> Setti
     position = np.array([ground * np.cos(bearing), ground * np.sin(bearing), z])
     body = Transform(rot_z(heading) @ rot_y(pitch) @ rot_x(roll), position)
     cabin = min(np.pi / 2 - np.arctan2(1.35, ground), rig.cabin.cabin_limits_rad[1])
-    off = rng.uniform(-1, 1, 3) * [OFF_M, OFF_M, OFF_RAD]
+    off_m, off_rad = off
+    error = rng.uniform(-1, 1, 3) * [off_m, off_m, off_rad]
     predicted = PoseEstimate(
         0.0,
-        (float(position[0] + off[0]), float(position[1] + off[1]), 0.0),
-        quat_from_matrix(rot_z(off[2]) @ body.rotation),
-        np.diag([OFF_M**2 / 3, OFF_M**2 / 3, 1e-12, 1e-4, 1e-4, OFF_RAD**2 / 3]),
+        (float(position[0] + error[0]), float(position[1] + error[1]), 0.0),
+        quat_from_matrix(rot_z(error[2]) @ body.rotation),
+        np.diag([off_m**2 / 3, off_m**2 / 3, 1e-12, 1e-4, 1e-4, off_rad**2 / 3]),
         Source.PREDICTION,
     )
     head = pointing_at(chain, np.add(predicted.position_site_m, [0, 0, 0.12]))
@@ -144,9 +147,13 @@ def run_trial(
     rig: RigCalibration | None = None,
     nuisance: Nuisance | None = None,
     dark: bool = False,
+    off: tuple[float, float] = (OFF_M, OFF_RAD),
 ) -> Trial:
-    """Draw, expose, localise; `dark` leaves the LEDs off, so that whatever is found is false."""
-    setting = draw(range_m, rng, rig or RigCalibration())
+    """Draw, expose, localise; `dark` leaves the LEDs off, so that whatever is found is false.
+
+    The prediction is `off` by up to so much [m], [rad].
+    """
+    setting = draw(range_m, rng, rig or RigCalibration(), off)
     leds, joint = sequence_for(setting, pairs)
     way = _jointly if joint else _singly
     windows = _windows(setting)
