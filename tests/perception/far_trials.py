@@ -156,7 +156,7 @@ def run_trial(
     setting = draw(range_m, rng, rig or RigCalibration(), off)
     leds, joint = sequence_for(setting, pairs)
     way = _jointly if joint else _singly
-    windows = _windows(setting)
+    windows = windows_of(setting)
     cameras = [
         _Camera.of(setting.true, c, w, rng, nuisance or Nuisance(), dark) for c, w in enumerate(windows)
     ]
@@ -169,7 +169,7 @@ def run_trial(
     return Trial(_error(setting.said.site_body, fix), fix.covariance, limit, seconds, "")
 
 
-def _windows(setting: Setting) -> tuple[Window, Window]:
+def windows_of(setting: Setting) -> tuple[Window, Window]:
     chain, expected = setting.true.chain, setting.expectation
     margin = marker_spread(chain.rig, view_of(chain, expected.state).range_m).radius_px + 8.0
     windows = predicted_windows(chain, expected.state, expected.covariance, margin)
