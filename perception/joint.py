@@ -28,9 +28,9 @@ from perception.prediction import Expectation
 from perception.psf import Spread
 from perception.search import FilterImages, Hypothesis, search
 
-# Of the whole region: half of the 1e-3 that is claimed, as the threshold's theory keeps only its leading term
-# and on 1200 regions of white noise 1.3 to 2 times as many climbed as high as it says.
-FALSE_ALARM_RATE = 5e-4
+# Of the whole region: a third of the 1e-3 that is claimed, as the threshold's theory keeps only its leading term
+# and on 1200 regions of white noise 1.3 to 2.7 times as many climbed as high as it says.
+FALSE_ALARM_RATE = 3e-4
 _STARTS = 12
 _COARSE_LOSS = 3.0  # of joint SNR: more than the lattice can cost the best pose over another
 _GATE = 0.9999
