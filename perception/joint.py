@@ -28,8 +28,8 @@ from perception.prediction import Expectation
 from perception.psf import Spread
 from perception.search import FilterImages, Hypothesis, search
 
-# Of the whole region: a third of the 1e-3 that is claimed, as the threshold's theory keeps only its leading term
-# and on 1200 regions of white noise 1.3 to 2.7 times as many climbed as high as it says.
+# Of the whole region: a third of the 1e-3 that is claimed. The threshold keeps its theory's leading term only
+# and on 1200 regions of white noise 1.0 to 2.7 times as many climbed as high as it says.
 FALSE_ALARM_RATE = 3e-4
 _STARTS = 12
 _COARSE_LOSS = 3.0  # of joint SNR: more than the lattice can cost the best pose over another
