@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from executive.types import Array
 
 _LEAK_FACTOR = 1.15
+_ROUNDING = 1e-3  # counts, of single precision: an even image is not all outliers
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,5 +127,5 @@ def _spread(image: NDArray[np.floating[Any]]) -> float:
     """
     pixels = image.ravel() - image.mean()
     for _ in range(2):
-        pixels = pixels[np.abs(pixels) <= 4 * pixels.std()]
+        pixels = pixels[np.abs(pixels) <= 4 * pixels.std() + _ROUNDING]
     return float(pixels.std())

@@ -116,7 +116,7 @@ def observed_covariance(
     """Covariance (6, 6) of the body pose from the likelihood's own curvature, by central differences.
 
     Of faint light each image has its luck; the curvature knows it, the expected information does not. That
-    one is returned where the likelihood is not curved downwards in all directions.
+    one is taken where the likelihood is not curved downwards in all directions.
     """
     groups = _groups(at.flux_counts, shared)
 
@@ -130,8 +130,24 @@ def observed_covariance(
     H = np.stack([(gradient(-s) - gradient(s)) / (2 * s.max()) for s in steps])
     H = (H + H.T) / 2
     curved = bool(np.linalg.eigvalsh(H)[0] > 0)
-    covariance: Array = np.linalg.inv(H if curved else expected)[:6, :6]
+    information = _with_tails(H if curved else expected, readings, at)
+    covariance: Array = np.asarray(np.linalg.inv(information)[:6, :6], dtype=np.float64)
     return (covariance + covariance.T) / 2
+
+
+def _with_tails(information: Array, readings: Readings, at: Likely) -> Array:
+    """The information (n, n) whose inverse is the covariance of a likelihood with the tails that light has.
+
+    Twice the log likelihood falls off as snr^2 exp(-q), q quadratic in the d directions that the images
+    determine, not as snr^2 (1 - q). To first order in 1 / snr^2 the covariance of such a peak is that of its
+    curvature times 1 + (d + 2) / snr^2.
+    """
+    read = np.zeros_like(information)
+    readings.add_to(at.state, read[:STATE_SIZE, :STATE_SIZE], np.zeros(STATE_SIZE))
+    images = information - read
+    fluxes = len(information) - STATE_SIZE
+    directions = float(np.trace(np.linalg.solve(information, images))) - fluxes
+    return np.asarray(read + images / (1 + (directions + 2) / at.snr**2), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from executive.rig import RigCalibration
 from executive.types import Array, Centres, Images
 from perception.difference import difference
+from perception.frames import check_frames, saturation
 from perception.markers import Detection, find_markers
 from perception.psf import marker_spread
 from perception.similarity import compare
@@ -38,9 +39,13 @@ class Look:
 
 
 def look_at(rig: RigCalibration, data: Images | Centres, range_m: float) -> Look:
-    """Marker candidates in what the cameras returned, markers expected at about `range_m`."""
+    """Marker candidates in what the cameras returned, markers expected at about `range_m`.
+
+    ValueError unless the frames are as ordered (perception.frames).
+    """
     if isinstance(data, Centres):
         return Look(_given(data), None)
+    check_frames(data, rig.sensor)
     cameras = [_detect(rig, data, camera, range_m) for camera in (0, 1)]
     problems = [f"{name} camera: {c[2]}" for name, c in zip(("left", "right"), cameras, strict=True) if c[2]]
     return Look([c[0] for c in cameras], (cameras[0][1], cameras[1][1]), "; ".join(problems))
@@ -59,7 +64,8 @@ def _detect(
         find_markers(image, sigma, spread, (window.u, window.v), FALSE_ALARM_RATE) if 1 << m in leds else []
         for m, (image, sigma) in enumerate(zip(found.images, found.sigma, strict=True))
     ]
-    return candidates, found.reference, similarity.problem
+    problem = saturation(images.counts[camera], rig.sensor) or similarity.problem
+    return candidates, found.reference, problem
 
 
 def _given(centres: Centres) -> list[list[list[Detection]]]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Centres, Images, Vec2
+from executive.types import Centres, Images, Vec2, Window
 from perception.chain import Chain
 from perception.exposure import view_of
+from perception.frames import check_frames, saturation
 from perception.joint import JointFix, joint_fix
 from perception.mean_centres import MeanCentres, fix_from_centres
 from perception.plausibility import Rejection
@@ -23,33 +24,41 @@ class Pile:
         self._chain = chain
         n = len(chain.markers_plc_m)
         self._stacks = [Stack(n, chain.rig.sensor.noise_counts) for _ in (0, 1)]
-        self._corners: list[tuple[int, int]] = []
+        self._saturated = ["", ""]
+        self._windows: tuple[Window, Window] | None = None
         self._centres = MeanCentres.none(n)
         self.frames = 0
         self.reference: tuple[NDArray[np.float32], NDArray[np.float32]] | None = None
 
     def add(self, data: Images | Centres) -> None:
-        """Take in one shot; all shots of a pile have the same windows."""
-        self.frames += len(data.shot.leds)
+        """Take in one shot; ValueError unless its frames are as ordered, in the windows of all others."""
         if isinstance(data, Centres):
             self._centres = self._centres.with_shot(data)
+            self.frames += len(data.shot.leds)
             return
-        self._corners = [(w.u, w.v) for w in data.windows]
-        for stack, counts in zip(self._stacks, data.counts, strict=True):
-            stack.add(counts, data.shot.leds)
+        check_frames(data, self._chain.rig.sensor)
+        if self._windows not in (None, data.windows):
+            raise ValueError(f"got windows {data.windows}, expected {self._windows} as before")
+        self._windows = data.windows
+        self.frames += len(data.shot.leds)
+        for camera, counts in enumerate(data.counts):
+            self._stacks[camera].add(counts, data.shot.leds)
+            self._saturated[camera] = self._saturated[camera] or saturation(counts, self._chain.rig.sensor)
 
     @property
     def problem(self) -> str:
         """What makes the frames unusable, empty if nothing does."""
-        named = zip(("left", "right"), self._stacks, strict=True)
-        return "; ".join(f"{name} camera: {stack.problem}" for name, stack in named if stack.problem)
+        problems = [full or stack.problem for full, stack in zip(self._saturated, self._stacks, strict=True)]
+        named = zip(("left", "right"), problems, strict=True)
+        return "; ".join(f"{name} camera: {problem}" for name, problem in named if problem)
 
     def answer(self, expectation: Expectation, tilt_rad: Vec2, widen: float) -> JointFix | Rejection:
         """The one pose in the expectation's region that all of it shows."""
-        if not self._corners:
+        if self._windows is None:
             return fix_from_centres(self._chain, self._centres, expectation, tilt_rad)
         left, right = (stack.difference() for stack in self._stacks)
         self.reference = (left.reference, right.reference)
         range_m = view_of(self._chain, expectation.state).range_m
         spread = marker_spread(self._chain.rig, range_m)
-        return joint_fix(self._chain, (left, right), self._corners, spread, expectation, tilt_rad, widen)
+        corners = [(w.u, w.v) for w in self._windows]
+        return joint_fix(self._chain, (left, right), corners, spread, expectation, tilt_rad, widen)

@@ -70,27 +70,26 @@ def search(
     spread: Spread,
     widen: float,
     at_most: int,
-) -> tuple[list[Hypothesis], int]:
-    """The best hypotheses, one a pattern, best first, and how many were weighed."""
+) -> tuple[list[Hypothesis], float]:
+    """The best hypotheses, one a pattern, best first; the volume of place and heading searched [m2 rad]."""
     lattice = _Lattice.of(chain, expectation, _STEP_WIDTHS * spread.width_px, widen)
     found: list[Hypothesis] = []
-    weighed = 0
     for state in lattice.patterns(expectation.state):
         uv, _ = chain.project(state)
         if not np.isfinite(uv).all():
             continue
         score = _scores(cameras, uv, lattice.columns, lattice.rows)
-        weighed += score.size
         row, column = np.unravel_index(int(score.argmax()), score.shape)
         place = lattice.moved(state, int(column) - lattice.columns, int(row) - lattice.rows)
         found.append(Hypothesis(place, float(score[row, column])))
     found.sort(key=lambda h: -h.snr)
-    return found[:at_most], weighed
+    return found[:at_most], lattice.volume
 
 
 @dataclass(frozen=True, eq=False)
 class _Lattice:
-    """The hypotheses: distances and headings off the expected ones, half-widths in columns and rows."""
+    """The hypotheses: distances and headings off the expected ones, half-widths in columns and rows, and the
+    volume of place and heading [m2 rad] that they span."""
 
     away_m: Array
     turn_rad: Array
@@ -98,6 +97,7 @@ class _Lattice:
     rows: int
     column_per_rad: float
     row_per_m: float
+    volume: float
 
     @classmethod
     def of(cls, chain: Chain, expectation: Expectation, step_px: float, widen: float) -> _Lattice:
@@ -113,13 +113,17 @@ class _Lattice:
             math.sqrt(across @ P[:2, :2] @ across) / distance, chain.encoder_sigma_rad()[0]
         )
         per_rad, per_m = float(motion.about_mast[..., 0].mean()), float(motion.up[..., 1].mean())
+        half_away = min(reach * sigma_away, 0.8 * distance)
+        half_turn = min(reach * math.hypot(math.sqrt(P[5, 5]), sigma_bearing), math.pi)
+        columns = math.ceil(reach * sigma_bearing * abs(per_rad) + _ROOM_PX)
         return cls(
-            _steps(min(reach * sigma_away, 0.8 * distance), motion.away, step_px),
-            _steps(min(reach * math.hypot(math.sqrt(P[5, 5]), sigma_bearing), math.pi), motion.turn, step_px),
-            math.ceil(reach * sigma_bearing * abs(per_rad) + _ROOM_PX),
+            _steps(half_away, motion.away, step_px),
+            _steps(half_turn, motion.turn, step_px),
+            columns,
             math.ceil(reach * math.sqrt(P[2, 2]) * abs(per_m) + _ROOM_PX),
             per_rad,
             per_m,
+            8 * half_away * half_turn * columns / abs(per_rad) * distance,
         )
 
     def patterns(self, expected: ChainState) -> Iterator[ChainState]:

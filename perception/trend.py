@@ -10,6 +10,7 @@ from executive.rig import RigCalibration
 from executive.types import Array, Centres, Images, PoseEstimate, Source
 from perception.chain import Chain
 from perception.exposure import view_of
+from perception.frames import check_frames
 from perception.motion import coarse_position, motion_fragments
 from perception.prediction import Expectation
 
@@ -32,6 +33,7 @@ def centroids(rig: RigCalibration, data: Images | Centres, range_m: float) -> tu
     silhouette = rig.cameras[0].focal_px * _SILHOUETTE_SIGMA_M / range_m
     if isinstance(data, Centres):
         return data.uv_px[:, 0], np.hypot(np.nan_to_num(data.sigma_px[:, 0]), silhouette)
+    check_frames(data, rig.sensor)
     uv = np.full((2, 2), np.nan)
     reach = rig.cameras[0].focal_px * rig.rover.length_m / range_m
     for camera, (window, stack) in enumerate(zip(data.windows, data.counts, strict=True)):

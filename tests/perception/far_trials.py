@@ -7,6 +7,7 @@ the height of the ground; the prediction is off by up to 150 mm and 10 degrees.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -55,6 +56,10 @@ class Nuisance:
     light: float = 0.0
     texture: float = 0.08
 
+    @property
+    def moves(self) -> bool:
+        return (self.jitter_px, self.drift_px, self.light) != (0.0, 0.0, 0.0)
+
 
 @dataclass(frozen=True)
 class Trial:
@@ -94,7 +99,9 @@ class Setting:
     tilt_rad: tuple[float, float]
 
 
-def draw(range_m: float, rng: np.random.Generator, rig: RigCalibration) -> Setting:
+def draw(
+    range_m: float, rng: np.random.Generator, rig: RigCalibration, off: tuple[float, float] = (OFF_M, OFF_RAD)
+) -> Setting:
     """A rover at about `range_m` that drove away from the head, cabin tilted to it as far as joints allow."""
     chain = Chain.of(rig)
     ground = np.sqrt(range_m**2 - 1.35**2)
@@ -105,12 +112,13 @@ def draw(range_m: float, rng: np.random.Generator, rig: RigCalibration) -> Setti
     position = np.array([ground * np.cos(bearing), ground * np.sin(bearing), z])
     body = Transform(rot_z(heading) @ rot_y(pitch) @ rot_x(roll), position)
     cabin = min(np.pi / 2 - np.arctan2(1.35, ground), rig.cabin.cabin_limits_rad[1])
-    off = rng.uniform(-1, 1, 3) * [OFF_M, OFF_M, OFF_RAD]
+    off_m, off_rad = off
+    error = rng.uniform(-1, 1, 3) * [off_m, off_m, off_rad]
     predicted = PoseEstimate(
         0.0,
-        (float(position[0] + off[0]), float(position[1] + off[1]), 0.0),
-        quat_from_matrix(rot_z(off[2]) @ body.rotation),
-        np.diag([OFF_M**2 / 3, OFF_M**2 / 3, 1e-12, 1e-4, 1e-4, OFF_RAD**2 / 3]),
+        (float(position[0] + error[0]), float(position[1] + error[1]), 0.0),
+        quat_from_matrix(rot_z(error[2]) @ body.rotation),
+        np.diag([off_m**2 / 3, off_m**2 / 3, 1e-12, 1e-4, 1e-4, off_rad**2 / 3]),
         Source.PREDICTION,
     )
     head = pointing_at(chain, np.add(predicted.position_site_m, [0, 0, 0.12]))
@@ -139,12 +147,16 @@ def run_trial(
     rig: RigCalibration | None = None,
     nuisance: Nuisance | None = None,
     dark: bool = False,
+    off: tuple[float, float] = (OFF_M, OFF_RAD),
 ) -> Trial:
-    """Draw, expose, localise; `dark` leaves the LEDs off, so that whatever is found is false."""
-    setting = draw(range_m, rng, rig or RigCalibration())
+    """Draw, expose, localise; `dark` leaves the LEDs off, so that whatever is found is false.
+
+    The prediction is `off` by up to so much [m], [rad].
+    """
+    setting = draw(range_m, rng, rig or RigCalibration(), off)
     leds, joint = sequence_for(setting, pairs)
     way = _jointly if joint else _singly
-    windows = _windows(setting)
+    windows = windows_of(setting)
     cameras = [
         _Camera.of(setting.true, c, w, rng, nuisance or Nuisance(), dark) for c, w in enumerate(windows)
     ]
@@ -157,7 +169,7 @@ def run_trial(
     return Trial(_error(setting.said.site_body, fix), fix.covariance, limit, seconds, "")
 
 
-def _windows(setting: Setting) -> tuple[Window, Window]:
+def windows_of(setting: Setting) -> tuple[Window, Window]:
     chain, expected = setting.true.chain, setting.expectation
     margin = marker_spread(chain.rig, view_of(chain, expected.state).range_m).radius_px + 8.0
     windows = predicted_windows(chain, expected.state, expected.covariance, margin)
@@ -221,32 +233,30 @@ def _flux_e(scene: Scene, c: int, m: int) -> float:
 
 @dataclass
 class _Camera:
-    """A window's expected images: the ground with its slopes, and the light of each LED [e-]."""
+    """A window's expected images: the ground with its slopes, and the patch of light of each LED [e-]."""
 
     ground_e: np.ndarray
-    slopes_e: tuple[np.ndarray, np.ndarray]
-    spots_e: list[np.ndarray]
+    slopes_e: tuple[np.ndarray, np.ndarray] | None
+    spots_e: list[tuple[tuple[slice, slice], np.ndarray]]
     nuisance: Nuisance
 
     @classmethod
     def of(cls, scene: Scene, c: int, w: Window, rng, nuisance: Nuisance, dark: bool) -> _Camera:
-        ground = background_e(rng, (w.height, w.width), nuisance.texture)
-        along_v, along_u = np.gradient(ground)
-        spots = []
-        for m in range(4):
-            u, v = scene.uv_px[c, m] - (w.u, w.v)
-            light = spot((w.height, w.width), u, v, scene.ranges_m[c, m])
-            spots.append((0.0 if dark else _flux_e(scene, c, m)) * light)
-        return cls(ground, (along_u, along_v), spots, nuisance)
+        ground = _ground_e(nuisance.texture, w, rng)
+        slopes = tuple(np.gradient(ground)[::-1]) if nuisance.moves else None
+        spots = [_spot_e(scene, c, m, w, 0.0 if dark else _flux_e(scene, c, m)) for m in range(4)]
+        return cls(ground, slopes, spots, nuisance)
 
     def expose(self, leds: tuple[int, ...], part: slice, rng) -> np.ndarray:
         """Frames of a part of the sequence [counts]."""
         masks = leds[part]
         first = part.start or 0
-        lights = {mask: sum(s for m, s in enumerate(self.spots_e) if mask >> m & 1) for mask in set(masks)}
         frames = rng.standard_normal((len(masks), *self.ground_e.shape), dtype=np.float32)
         for k, mask in enumerate(masks):
-            expected = self._moved((first + k) / len(leds), rng) + lights[mask]
+            expected = self._moved((first + k) / len(leds), rng)
+            for m, (place, light) in enumerate(self.spots_e):
+                if mask >> m & 1:
+                    expected[place] += light
             frames[k] *= np.sqrt(expected + READ_E**2)
             frames[k] += expected
         frames /= np.float32(GAIN_E)
@@ -255,8 +265,30 @@ class _Camera:
 
     def _moved(self, progress: float, rng) -> np.ndarray:
         n = self.nuisance
-        if n.jitter_px == n.drift_px == n.light == 0:
-            return self.ground_e
+        if self.slopes_e is None:
+            return self.ground_e.copy()
         du, dv = n.drift_px * progress + n.jitter_px * rng.standard_normal(2)
         moved = self.ground_e - du * self.slopes_e[0] - dv * self.slopes_e[1]
         return moved * (1 + n.light * np.sin(2 * np.pi * progress))
+
+
+@cache
+def _sheet_e(texture: float) -> np.ndarray:
+    """Ground for all trials, made once; each takes a place of its own."""
+    return background_e(np.random.default_rng(0), (2048, 2048), texture).astype(np.float32)
+
+
+def _ground_e(texture: float, w: Window, rng) -> np.ndarray:
+    v, u = (int(rng.integers(2048 - size + 1)) for size in (w.height, w.width))
+    return _sheet_e(texture)[v : v + w.height, u : u + w.width]
+
+
+def _spot_e(scene: Scene, c: int, m: int, w: Window, flux_e: float):
+    """Where one LED's light falls in the window, and how much."""
+    u, v = scene.uv_px[c, m] - (w.u, w.v)
+    reach = 4 * marker_spread(scene.chain.rig, float(scene.ranges_m[c, m])).radius_px
+    left, top = (max(round(float(at)) - reach, 0) for at in (u, v))
+    place = slice(top, max(top + 2 * reach, 0)), slice(left, max(left + 2 * reach, 0))
+    height, width = (len(range(n)[s]) for n, s in zip((w.height, w.width), place, strict=True))
+    light = spot((height, width), u - left, v - top, scene.ranges_m[c, m])
+    return place, (flux_e * light).astype(np.float32)

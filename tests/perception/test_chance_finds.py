@@ -1,0 +1,111 @@
+"""What noise may climb to, and how wide a peak of faint light is: both against brute force."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+
+from executive.rig import RigCalibration
+from perception.chain import STATE_SIZE
+from perception.chance_finds import joint_threshold, log_distinct_poses, unit_information
+from perception.difference import Difference
+from perception.exposure import view_of
+from perception.likelihood import Evidence, _Point, most_likely, observed_covariance
+from perception.pose import Readings, Sighting
+from perception.psf import marker_spread
+from tests.perception.far_trials import draw
+from tests.perception.synthetic import spot
+
+NOTHING_SEEN = np.full((2, 4, 2), np.nan), np.full((2, 4, 2, 2), np.nan)
+
+
+@pytest.fixture(scope="module")
+def setting():
+    return draw(15.0, np.random.default_rng(3), RigCalibration())
+
+
+@pytest.fixture(scope="module")
+def readings(setting):
+    said = setting.said
+    sighting = Sighting(*NOTHING_SEEN, said.head_rad, said.joints_rad, setting.tilt_rad)
+    return Readings.of(setting.true.chain, sighting, setting.expectation.surface)
+
+
+@pytest.fixture(scope="module")
+def spread(setting):
+    return marker_spread(setting.true.chain.rig, view_of(setting.true.chain, setting.said).range_m)
+
+
+def threshold(setting, readings, spread, volume=0.1, rate=1e-3):
+    return joint_threshold(setting.true.chain, setting.said, readings, spread, volume, rate)
+
+
+def test_the_poses_told_apart_times_the_gaussian_tail_are_the_false_alarm_rate(setting, readings, spread):
+    snr = threshold(setting, readings, spread)
+    read = np.zeros((STATE_SIZE, STATE_SIZE))
+    readings.add_to(setting.said, read, np.zeros(STATE_SIZE))
+    poses = log_distinct_poses(unit_information(setting.true.chain, setting.said, spread), read, 0.1, snr)
+    assert math.exp(poses) * ndtr(-snr) == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_a_hundred_times_the_region_needs_as_much_as_a_hundredth_of_the_rate(setting, readings, spread):
+    far, seldom = (
+        threshold(setting, readings, spread, volume=10.0),
+        threshold(setting, readings, spread, rate=1e-5),
+    )
+    assert far == pytest.approx(seldom, abs=1e-6)
+    assert far > threshold(setting, readings, spread) + 0.5
+
+
+@pytest.mark.parametrize(("volume", "rate"), [(0.0, 1e-3), (math.nan, 1e-3), (0.1, 0.0), (0.1, 1.0)])
+def test_a_region_without_volume_or_a_rate_that_is_none_is_refused(setting, readings, spread, volume, rate):
+    with pytest.raises(ValueError, match="expected"):
+        threshold(setting, readings, spread, volume, rate)
+
+
+def test_the_covariance_of_a_faint_rover_allows_for_the_tails_of_its_peak(setting, readings, spread):
+    """Weighs states drawn from the curvature's Gaussian by the likelihood itself."""
+    chain, state = setting.true.chain, setting.said
+    exact = replace(readings, encoder=np.array([*state.head_rad, *state.joints_rad]))
+    evidence, flux = _noiseless(chain, state, spread, snr=8.0)
+    peak = most_likely(chain, evidence, exact, state, np.full(4, flux), shared=True)
+    told = observed_covariance(chain, evidence, exact, peak, shared=True)
+
+    together = np.ones((4, 1))
+    at = _Point.of(chain, evidence, exact, peak.state, peak.flux_counts, together)
+    rng = np.random.default_rng(5)
+    steps = rng.multivariate_normal(np.zeros(STATE_SIZE + 1), np.linalg.inv(at.information), 3000)
+    gaussian = -0.5 * np.einsum("ni,ij,nj->n", steps, at.information, steps)
+    value = np.array(
+        [
+            _Point.of(
+                chain, evidence, exact, peak.state.moved(s[:10]), peak.flux_counts + s[10], together
+            ).value
+            for s in steps
+        ]
+    )
+    weight = np.exp(np.clip((value - at.value) / 2 - gaussian, None, 3.0))
+    free = [0, 1, 5]
+    of_peak = np.average(steps[:, free] ** 2, axis=0, weights=weight)
+    of_curvature = (steps[:, free] ** 2).mean(axis=0)
+    grown = np.diag(told)[free] / np.linalg.inv(at.information).diagonal()[free]
+    tails = of_peak / of_curvature
+    assert (tails > 1.1).all()
+    assert (grown > 1 + (tails - 1) / 4).all()  # to first order
+    assert (grown <= tails).all()
+
+
+def _noiseless(chain, state, spread, snr):
+    """Differences of unit noise that show exactly the markers, together at this SNR; their flux."""
+    flux = snr / np.sqrt(8 * spread.energy)
+    uv, _ = chain.project(state)
+    corners = [tuple(int(x) for x in np.floor(c.min(axis=0)) - 20) for c in uv]
+    images = []
+    for camera, corner in zip(uv, corners, strict=True):
+        spots = [flux * spot((60, 60), *(place - corner), view_of(chain, state).range_m) for place in camera]
+        images.append(np.array(spots, dtype=np.float32))
+    ones = np.ones_like(images[0])
+    differences = [Difference(i, ones, ones[0], 100) for i in images]
+    return Evidence.of(differences, corners, spread, np.ones((2, 4))), flux
