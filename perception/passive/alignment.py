@@ -1,0 +1,165 @@
+"""Damped Gauss-Newton over pose and sun: the pose at which rover, shadow and ground explain both images best.
+
+Eight parameters from a start: along the line of sight, across it, up [m]; rotation vector in site [rad]; the
+sun's azimuth and elevation [rad]. Derivatives are differences of pictures drawn for all parameters at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from executive.types import Array
+from perception.body import Transform
+from perception.passive.drawing import Stands
+from perception.passive.matching import Detail, Match, Scene, joint_cost, match
+from perception.rotation import exp_map
+
+SIZE = 8
+_STEP_PX = 0.1
+_CORRELATED_PX = 2.0  # how far what a drawing leaves out reaches from pixel to pixel
+_ALIKE = 8.0  # pixels that err alike, and count as one
+_ENOUGH = 0.02  # of twice the log likelihood: a seventh of a sigma
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where parameters are zero, and what is known of them besides the images: `sigma` (8,) about `mean` (8,)."""
+
+    site_body: Transform
+    sun_rad: Array
+    eye_m: Array
+    mean: Array
+    sigma: Array
+
+    @property
+    def axes(self) -> Array:
+        """Columns: along, across, up, in site."""
+        ahead = self.site_body.position_m[:2] - self.eye_m[:2]
+        ahead = ahead / np.linalg.norm(ahead)
+        return np.array([[ahead[0], -ahead[1], 0.0], [ahead[1], ahead[0], 0.0], [0.0, 0.0, 1.0]])
+
+    @property
+    def range_m(self) -> float:
+        return float(np.linalg.norm(self.site_body.position_m - self.eye_m))
+
+    def body(self, parameters: Array) -> Transform:
+        """The body at these parameters (8,)."""
+        turned = exp_map(parameters[3:6]) @ self.site_body.rotation
+        return Transform(turned, self.site_body.position_m + self.axes @ parameters[:3])
+
+    def stands(self, parameters: Array) -> Stands:
+        """The poses to draw for parameters (n, 8)."""
+        bodies = [self.body(p) for p in parameters]
+        return Stands(
+            np.stack([b.rotation for b in bodies]),
+            np.stack([b.position_m for b in bodies]),
+            self.sun_rad + parameters[:, 6:],
+        )
+
+    def steps(self, focal_px: float) -> Array:
+        """Parameter steps (8,) that move the picture by about a tenth of a pixel."""
+        across = _STEP_PX * self.range_m / focal_px
+        drop = max(self.eye_m[2] - self.site_body.position_m[2], 0.3)
+        turn = across / 0.15
+        return np.array([across * self.range_m / drop, across, across, turn, turn, turn, 2 * turn, 2 * turn])
+
+
+@dataclass(frozen=True, eq=False)
+class Aligned:
+    """`parameters` (8,), their covariance (8, 8), the matches of both cameras, cost with priors."""
+
+    start: Start
+    parameters: Array
+    covariance: Array
+    matches: tuple[Match, ...]
+    cost: float
+    converged: bool
+
+    @property
+    def site_body(self) -> Transform:
+        return self.start.body(self.parameters)
+
+
+def align(
+    scenes: Sequence[Scene],
+    start: Start,
+    parameters: Array,
+    details: Sequence[Detail],
+    focal_px: float,
+    most_steps: int,
+) -> Aligned:
+    """Go downhill from `parameters` (8,)."""
+    probes = np.vstack([np.zeros(SIZE), np.diag(start.steps(focal_px))])
+    weight = start.sigma**-2.0
+
+    def shown(at: Array) -> list[Match]:
+        return [match(s, start.stands(at), d) for s, d in zip(scenes, details, strict=True)]
+
+    damping, converged = 1e-3, False
+    at = shown(parameters + probes)
+    for _ in range(most_steps):
+        H, g = _normal_equations(at, probes)
+        H[range(SIZE), range(SIZE)] += weight
+        g += weight * (start.mean - parameters)
+        step = _limited(np.linalg.solve(H + damping * np.diag(np.diag(H)), g), start, focal_px)
+        ahead = float(step @ (2 * g - H @ step))
+        if ahead < _ENOUGH:
+            converged = True
+            break
+        moved = parameters + step
+        gained = _cost(at, start, parameters) - _cost(shown(moved[None]), start, moved)
+        if gained > 0:
+            parameters, at = moved, shown(moved + probes)
+        damping = damping / 10 if gained > 0.5 * ahead else min(damping * 10, 1e6)
+    covariance = _covariance(at, probes, start)
+    return Aligned(start, parameters, covariance, tuple(at), _cost(at, start, parameters), converged)
+
+
+def _cost(matches: Sequence[Match], start: Start, parameters: Array) -> float:
+    known = (parameters - start.mean) / start.sigma
+    return float(joint_cost(matches)[0]) / _ALIKE + float(known @ known)
+
+
+def _slopes(one: Match, probes: Array) -> Array:
+    """Derivative (8, h, w) of the residuals."""
+    steps = probes[1:].max(axis=1)
+    slopes: Array = (one.residual[1:] - one.residual[:1]) / steps[:, None, None]
+    return slopes
+
+
+def _normal_equations(matches: Sequence[Match], probes: Array) -> tuple[Array, Array]:
+    H, g = np.zeros((SIZE, SIZE)), np.zeros(SIZE)
+    for one in matches:
+        J = _slopes(one, probes).reshape(SIZE, -1)
+        rest = one.residual[0].ravel()
+        weight = np.minimum(1.0, 4.0 / np.maximum(np.abs(rest), 1e-9))
+        H += (J * weight) @ J.T
+        g -= (J * weight) @ rest
+    return H / _ALIKE, g / _ALIKE
+
+
+def _covariance(matches: Sequence[Match], probes: Array, start: Start) -> Array:
+    """Covariance (8, 8) that allows for residuals which are correlated from pixel to pixel (sandwich)."""
+    H, _ = _normal_equations(matches, probes)
+    meat = np.zeros_like(H)
+    for one in matches:
+        J = _slopes(one, probes)
+        score = J * np.clip(one.residual[0], -4.0, 4.0)
+        near = np.stack([cv2.GaussianBlur(s, (0, 0), _CORRELATED_PX) for s in score])
+        near *= 2 * np.pi * _CORRELATED_PX**2 / _ALIKE**2
+        meat += score.reshape(SIZE, -1) @ near.reshape(SIZE, -1).T
+    meat = (meat + meat.T) / 2
+    known = np.diag(start.sigma**-2.0)
+    inverse = np.linalg.inv(H + known)
+    covariance: Array = inverse @ (meat + known) @ inverse
+    return covariance
+
+
+def _limited(step: Array, start: Start, focal_px: float) -> Array:
+    """A step that moves nothing by more than some pixels."""
+    most = 30 * start.steps(focal_px)
+    return step * min(1.0, float((most / np.maximum(np.abs(step), 1e-12)).min()))

@@ -1,0 +1,185 @@
+"""The rover drawn for several poses at once: how much of each pixel shows which of its shades, or its shadow.
+
+Facets that face the camera are covered exactly (perception.passive.coverage), solids hide one another from
+near to far, the shadow is what facets that face the sun cast on the plane that the rover stands on. All of it
+is blurred as the optics do.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.types import Array, Vec2, Window
+from perception.chain import Chain
+from perception.passive.coverage import Layers, coverage
+from perception.passive.solids import Solids
+
+_FINE_RANGE_M = 1e9  # beyond, facets are so narrow that hiding is worked out on half pixels
+_TOUCHING_M = 1e-6
+_LOWEST_SINE = 0.05  # of the sun's height over the plane, for a shadow of finite length
+
+
+@dataclass(frozen=True, eq=False)
+class Stands:
+    """Poses (n) to draw: body in site (n, 3, 3) and (n, 3) [m], sun as azimuth and elevation (n, 2) [rad]."""
+
+    rotation: Array
+    position_m: Array
+    sun_rad: Array
+
+    @property
+    def toward_sun(self) -> Array:
+        """Unit vectors (n, 3) towards the sun in site."""
+        azimuth, elevation = self.sun_rad.T
+        level = np.cos(elevation)
+        return np.stack([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """One camera's picture in shares: `shades` (n, s, h, w) of the rover's, `ground` (n, h, w) not hidden by
+    it, `shadow` (n, h, w) the part of that in its shadow."""
+
+    shades: Layers
+    ground: Layers
+    shadow: Layers
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """Facets as outlines: segments in pixels of the window with the layer of each."""
+
+    start: Array
+    end: Array
+    layer: NDArray[np.intp]
+
+
+class Artist:
+    """Draws one rover (solids at given joints) from one head pose into one window of one camera."""
+
+    def __init__(self, chain: Chain, solids: Solids, head_rad: Vec2, camera: int, window: Window) -> None:
+        self._chain, self._solids, self._camera, self._window = chain, solids, camera, window
+        self._head = chain.site_ih(head_rad)
+        self._eye = self._head.apply(chain.model.position_ih_m[camera][None])[0]
+
+    def draw(self, stands: Stands) -> Drawing:
+        """The rover at these poses; shades that none of them shows are left out."""
+        range_m = float(np.linalg.norm(stands.position_m[0] - self._eye))
+        fine = 2 if range_m > _FINE_RANGE_M else 1
+        shares, shade_solid = self._facets(stands, fine)
+        clear = np.ones((len(shares), *shares.shape[2:]), np.float32)
+        for solid in self._near_first(stands):
+            own = shade_solid == solid
+            hidden = 1 - shares[:, own].sum(axis=1)
+            shares[:, own] *= clear[:, None]
+            clear *= np.clip(hidden, 0, 1)
+        shadow = self._shadow(stands, fine) * clear
+        sigma_px = self._blur_px(range_m)
+        down = _optics(self._window.height, fine, sigma_px)
+        across = _optics(self._window.width, fine, sigma_px).T
+        return Drawing(down @ shares @ across, down @ clear @ across, down @ shadow @ across)
+
+    def pixels_of(self, points_site_m: Array) -> Array:
+        """Window coordinates (n, 2) of points (n, 3) in site [px]."""
+        return self._pixels(points_site_m, 1)
+
+    def _facets(self, stands: Stands, fine: int) -> tuple[Layers, NDArray[np.intp]]:
+        """Shares (n, s, h, w) of the shades that show, none hidden yet, and the solids that bear them."""
+        solids = self._solids
+        point = solids.point_m @ stands.rotation.transpose(0, 2, 1) + stands.position_m[:, None]
+        normal = solids.normal @ stands.rotation.transpose(0, 2, 1)
+        faces = ((self._eye - point) * normal).sum(axis=-1) > 0
+        shown = np.unique(solids.shade[faces.any(axis=0)])
+        layer_of = np.full(len(solids.shade_solid), -1)
+        layer_of[shown] = np.arange(len(shown))
+        uv = self._pixels(self._placed(solids.vertices_m, stands), fine)
+        seen = self._outlines(uv, faces, layer_of[solids.shade], len(shown))
+        shares = self._covered(seen, len(faces), len(shown), fine)
+        for shade, base in zip(layer_of, solids.shade_over, strict=True):
+            if shade >= 0 and base >= 0:
+                shares[:, layer_of[base]] -= shares[:, shade]
+        return shares, solids.shade_solid[shown]
+
+    def _shadow(self, stands: Stands, fine: int) -> Layers:
+        """Shares (n, h, w) of the plane under the rover that it keeps the sun off."""
+        solids, toward = self._solids, stands.toward_sun
+        up = stands.rotation[:, :, 2]
+        sine = np.maximum((toward * up).sum(axis=-1), _LOWEST_SINE)
+        points = self._placed(solids.vertices_m, stands)
+        height = ((points - stands.position_m[:, None]) * up[:, None]).sum(axis=-1)
+        fallen = points - (np.maximum(height, 0) / sine[:, None])[..., None] * toward[:, None]
+        lit = (solids.normal @ stands.rotation.transpose(0, 2, 1) @ toward[..., None])[..., 0] > 0
+        lit &= solids.over < 0
+        count = int(solids.solid.max()) + 1
+        seen = self._outlines(self._pixels(fallen, fine), lit, solids.solid, count)
+        shares = self._covered(seen, len(lit), count, fine)
+        dark: Layers = 1 - np.prod(1 - np.clip(shares, 0, 1), axis=1)
+        return dark
+
+    def _placed(self, points_m: Array, stands: Stands) -> Array:
+        placed: Array = points_m @ stands.rotation.transpose(0, 2, 1) + stands.position_m[:, None]
+        return placed
+
+    def _pixels(self, points_site_m: Array, fine: int) -> Array:
+        """Window coordinates (n, v, 2) of points, in parts of pixels, whole numbers at borders."""
+        flat = self._head.inverse().apply(points_site_m.reshape(-1, 3))
+        uv = self._chain.model.project(flat)[self._camera]
+        corner = (self._window.u - 0.5, self._window.v - 0.5)
+        return (np.nan_to_num(uv) - corner).reshape(points_site_m.shape[:-1] + (2,)) * fine
+
+    def _outlines(self, uv: Array, facets: NDArray[np.bool_], layer: Array, layers: int) -> _Seen:
+        """The edges of the facets chosen (n, f), each in the layer of its facet (f,)."""
+        solids = self._solids
+        stand, edge = np.nonzero(facets[:, solids.edge_facet])
+        ends = solids.edges[edge]
+        where = stand * layers + np.asarray(layer, dtype=np.intp)[solids.edge_facet[edge]]
+        return _Seen(uv[stand, ends[:, 0]], uv[stand, ends[:, 1]], where)
+
+    def _covered(self, seen: _Seen, stands: int, layers: int, fine: int) -> Layers:
+        height, width = self._window.height * fine, self._window.width * fine
+        flat = coverage(seen.start, seen.end, seen.layer, (stands * layers, height, width))
+        return flat.reshape(stands, layers, height, width)
+
+    def _near_first(self, stands: Stands) -> list[int]:
+        """Solids in an order in which none is hidden by a later one, as the first pose shows them."""
+        solids = self._solids
+        eye = stands.rotation[0].T @ (self._eye - stands.position_m[0])
+        waiting = list(range(int(solids.solid.max()) + 1))
+        order: list[int] = []
+        while waiting:
+            free = [s for s in waiting if not any(self._hides(o, s, eye) for o in waiting if o != s)]
+            chosen = (free or waiting)[0]
+            order.append(chosen)
+            waiting.remove(chosen)
+        return order
+
+    def _hides(self, front: int, back: int, eye: Array) -> bool:
+        """Whether some facet's plane has `front` on the eye's side and `back` on the other."""
+        solids = self._solids
+        for solid, other, sign in ((back, front, 1.0), (front, back, -1.0)):
+            mine = solids.solid == solid
+            point, normal = solids.point_m[mine], solids.normal[mine]
+            toward = sign * ((eye - point) * normal).sum(axis=-1) > 0
+            depth = (solids.solid_vertices(other)[None] - point[:, None]) @ normal[..., None]
+            if (toward & (depth[..., 0] > -_TOUCHING_M).all(axis=1)).any():
+                return True
+        return False
+
+    def _blur_px(self, range_m: float) -> float:
+        sensor = self._chain.rig.sensor
+        disc = sensor.defocus_px_m * abs(1 / range_m - 1 / sensor.focus_m)
+        return math.hypot(sensor.psf_sigma_px, disc / 4)
+
+
+def _optics(pixels: int, fine: int, sigma_px: float) -> Layers:
+    """Matrix (pixels, pixels * fine) that blurs by a Gaussian and means over the parts of a pixel."""
+    parts = (np.arange(pixels * fine) + 0.5) / fine - 0.5
+    off = np.arange(pixels)[:, None] - np.arange(pixels)[None]
+    gauss = np.exp(-0.5 * (off / sigma_px) ** 2)
+    gauss /= gauss.sum(axis=1, keepdims=True)
+    pool = (np.rint(parts)[None] == np.arange(pixels)[:, None]) / fine
+    return np.asarray(gauss @ pool, dtype=np.float32)
