@@ -1,7 +1,7 @@
-"""Damped Gauss-Newton over pose and sun: the pose at which rover, shadow and ground explain both images best.
+"""Damped Gauss-Newton over the pose at which rover, shadow and ground explain both images best.
 
-Eight parameters from a start: along the line of sight, across it, up [m]; rotation vector in site [rad]; the
-sun's azimuth and elevation [rad]. Derivatives are differences of pictures drawn for all parameters at once.
+Six parameters from a start: along the line of sight, across it, up [m]; rotation vector in site [rad].
+Derivatives are differences of pictures drawn for all parameters at once.
 """
 
 from __future__ import annotations
@@ -15,19 +15,20 @@ import numpy as np
 from executive.types import Array
 from perception.body import Transform
 from perception.passive.drawing import Stands
-from perception.passive.matching import Detail, Match, Scene, joint_cost, match
+from perception.passive.matching import Match, Scene, match
 from perception.rotation import exp_map
 
-SIZE = 8
+SIZE = 6
 _STEP_PX = 0.1
 _CORRELATED_PX = 2.0  # how far what a drawing leaves out reaches from pixel to pixel
 _ALIKE = 8.0  # pixels that err alike, and count as one
+_OUTLIER = 4.0  # sigmas
 _ENOUGH = 0.02  # of twice the log likelihood: a seventh of a sigma
 
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Where parameters are zero, and what is known of them besides the images: `sigma` (8,) about `mean` (8,)."""
+    """Where parameters are zero, and what is known of them besides the images: `sigma` (6,) about `mean` (6,)."""
 
     site_body: Transform
     sun_rad: Array
@@ -47,30 +48,30 @@ class Start:
         return float(np.linalg.norm(self.site_body.position_m - self.eye_m))
 
     def body(self, parameters: Array) -> Transform:
-        """The body at these parameters (8,)."""
+        """The body at these parameters (6,)."""
         turned = exp_map(parameters[3:6]) @ self.site_body.rotation
         return Transform(turned, self.site_body.position_m + self.axes @ parameters[:3])
 
     def stands(self, parameters: Array) -> Stands:
-        """The poses to draw for parameters (n, 8)."""
+        """The poses to draw for parameters (n, 6)."""
         bodies = [self.body(p) for p in parameters]
         return Stands(
             np.stack([b.rotation for b in bodies]),
             np.stack([b.position_m for b in bodies]),
-            self.sun_rad + parameters[:, 6:],
+            np.broadcast_to(self.sun_rad, (len(bodies), 2)),
         )
 
     def steps(self, focal_px: float) -> Array:
-        """Parameter steps (8,) that move the picture by about a tenth of a pixel."""
+        """Parameter steps (6,) that move the picture by about a tenth of a pixel."""
         across = _STEP_PX * self.range_m / focal_px
         drop = max(self.eye_m[2] - self.site_body.position_m[2], 0.3)
         turn = across / 0.15
-        return np.array([across * self.range_m / drop, across, across, turn, turn, turn, 2 * turn, 2 * turn])
+        return np.array([across * self.range_m / drop, across, across, turn, turn, turn])
 
 
 @dataclass(frozen=True, eq=False)
 class Aligned:
-    """`parameters` (8,), their covariance (8, 8), the matches of both cameras, cost with priors."""
+    """`parameters` (6,), their covariance (6, 6), the matches of both cameras, cost with priors."""
 
     start: Start
     parameters: Array
@@ -88,21 +89,21 @@ def align(
     scenes: Sequence[Scene],
     start: Start,
     parameters: Array,
-    details: Sequence[Detail],
+    sigmas: Sequence[Array],
     focal_px: float,
     most_steps: int,
 ) -> Aligned:
-    """Go downhill from `parameters` (8,)."""
+    """Go downhill from `parameters` (6,), pixels weighed by their `sigmas` (h, w) of each camera."""
     probes = np.vstack([np.zeros(SIZE), np.diag(start.steps(focal_px))])
     weight = start.sigma**-2.0
 
     def shown(at: Array) -> list[Match]:
-        return [match(s, start.stands(at), d) for s, d in zip(scenes, details, strict=True)]
+        return [match(s, start.stands(at), sigma) for s, sigma in zip(scenes, sigmas, strict=True)]
 
     damping, converged = 1e-3, False
     at = shown(parameters + probes)
     for _ in range(most_steps):
-        H, g = _normal_equations(at, probes)
+        H, g = _normal_equations(at, sigmas, probes)
         H[range(SIZE), range(SIZE)] += weight
         g += weight * (start.mean - parameters)
         step = _limited(np.linalg.solve(H + damping * np.diag(np.diag(H)), g), start, focal_px)
@@ -111,51 +112,63 @@ def align(
             converged = True
             break
         moved = parameters + step
-        gained = _cost(at, start, parameters) - _cost(shown(moved[None]), start, moved)
+        gained = _cost(at, sigmas, start, parameters) - _cost(shown(moved[None]), sigmas, start, moved)
         if gained > 0:
             parameters, at = moved, shown(moved + probes)
         damping = damping / 10 if gained > 0.5 * ahead else min(damping * 10, 1e6)
-    covariance = _covariance(at, probes, start)
-    return Aligned(start, parameters, covariance, tuple(at), _cost(at, start, parameters), converged)
+    covariance = _covariance(at, sigmas, probes, start)
+    return Aligned(start, parameters, covariance, tuple(at), _cost(at, sigmas, start, parameters), converged)
 
 
-def _cost(matches: Sequence[Match], start: Start, parameters: Array) -> float:
+def _cost(matches: Sequence[Match], sigmas: Sequence[Array], start: Start, parameters: Array) -> float:
     known = (parameters - start.mean) / start.sigma
-    return float(joint_cost(matches)[0]) / _ALIKE + float(known @ known)
+    images = sum(float(_huber(m.residual[0] / s).sum()) for m, s in zip(matches, sigmas, strict=True))
+    return images / _ALIKE + float(known @ known)
 
 
-def _slopes(one: Match, probes: Array) -> Array:
-    """Derivative (8, h, w) of the residuals."""
-    steps = probes[1:].max(axis=1)
-    slopes: Array = (one.residual[1:] - one.residual[:1]) / steps[:, None, None]
-    return slopes
+def _huber(rest: Array) -> Array:
+    """Squares that go on as straight lines beyond `_OUTLIER`."""
+    size = np.abs(rest)
+    cost: Array = np.where(size < _OUTLIER, rest**2, _OUTLIER * (2 * size - _OUTLIER))
+    return cost
 
 
-def _normal_equations(matches: Sequence[Match], probes: Array) -> tuple[Array, Array]:
+def _scores(
+    matches: Sequence[Match], sigmas: Sequence[Array], probes: Array
+) -> list[tuple[Array, Array, Array]]:
+    """Per camera: derivative (6, h, w) of the residuals, residuals, and their weights (h, w), in sigmas."""
+    steps = probes[1:].max(axis=1)[:, None, None]
+    scores = []
+    for one, sigma in zip(matches, sigmas, strict=True):
+        rest = one.residual[0] / sigma
+        slopes = (one.residual[1:] - one.residual[:1]) / (steps * sigma)
+        scores.append((slopes, rest, np.minimum(1.0, _OUTLIER / np.maximum(np.abs(rest), 1e-9))))
+    return scores
+
+
+def _normal_equations(
+    matches: Sequence[Match], sigmas: Sequence[Array], probes: Array
+) -> tuple[Array, Array]:
     H, g = np.zeros((SIZE, SIZE)), np.zeros(SIZE)
-    for one in matches:
-        J = _slopes(one, probes).reshape(SIZE, -1)
-        rest = one.residual[0].ravel()
-        weight = np.minimum(1.0, 4.0 / np.maximum(np.abs(rest), 1e-9))
-        H += (J * weight) @ J.T
-        g -= (J * weight) @ rest
+    for slopes, rest, weight in _scores(matches, sigmas, probes):
+        J = slopes.reshape(SIZE, -1)
+        H += (J * weight.ravel()) @ J.T
+        g -= J @ (weight * rest).ravel()
     return H / _ALIKE, g / _ALIKE
 
 
-def _covariance(matches: Sequence[Match], probes: Array, start: Start) -> Array:
-    """Covariance (8, 8) that allows for residuals which are correlated from pixel to pixel (sandwich)."""
-    H, _ = _normal_equations(matches, probes)
+def _covariance(matches: Sequence[Match], sigmas: Sequence[Array], probes: Array, start: Start) -> Array:
+    """Covariance (6, 6) that allows for residuals which are correlated from pixel to pixel (sandwich)."""
+    H, _ = _normal_equations(matches, sigmas, probes)
     meat = np.zeros_like(H)
-    for one in matches:
-        J = _slopes(one, probes)
-        score = J * np.clip(one.residual[0], -4.0, 4.0)
+    for slopes, rest, weight in _scores(matches, sigmas, probes):
+        score = slopes * (weight * rest)
         near = np.stack([cv2.GaussianBlur(s, (0, 0), _CORRELATED_PX) for s in score])
-        near *= 2 * np.pi * _CORRELATED_PX**2 / _ALIKE**2
         meat += score.reshape(SIZE, -1) @ near.reshape(SIZE, -1).T
-    meat = (meat + meat.T) / 2
+    meat *= 2 * np.pi * _CORRELATED_PX**2 / _ALIKE**2
     known = np.diag(start.sigma**-2.0)
     inverse = np.linalg.inv(H + known)
-    covariance: Array = inverse @ (meat + known) @ inverse
+    covariance: Array = inverse @ ((meat + meat.T) / 2 + known) @ inverse
     return covariance
 
 

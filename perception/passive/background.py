@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from executive.types import Array
 
 _SEARCH_PX = 4
+_SPARSE = 3  # of pixels that choose the whole-pixel shift
 _STEPS = 8
 _OUTLIER = 3.0  # spreads from which a pixel counts for another thing than ground
 _MAD = 1.4826
@@ -94,13 +95,15 @@ def _ground(rest: Array) -> NDArray[np.bool_]:
 def _coarse_shift(image: Array, empty: Array) -> Array:
     """The whole-pixel shift at which most of the views agree."""
     r = _SEARCH_PX
-    core = _flattened(image)[r:-r, r:-r]
+    core = _flattened(image)[r:-r:_SPARSE, r:-r:_SPARSE]
     flat = _flattened(empty)
+    limit = 2 * float(np.median(np.abs(core)))
     best, found = np.inf, np.zeros(2)
-    h, w = core.shape
+    h, w = image.shape[0] - 2 * r, image.shape[1] - 2 * r
     for dv in range(-r, r + 1):
         for du in range(-r, r + 1):
-            off = float(np.median(np.abs(core - flat[r - dv : r - dv + h, r - du : r - du + w])))
+            part = flat[r - dv : r - dv + h : _SPARSE, r - du : r - du + w : _SPARSE]
+            off = float(np.mean(np.minimum(np.abs(core - part), limit)))
             if off < best:
                 best, found = off, np.array([du, dv], dtype=np.float64)
     return found

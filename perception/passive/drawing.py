@@ -18,7 +18,6 @@ from perception.chain import Chain
 from perception.passive.coverage import Layers, coverage
 from perception.passive.solids import Solids
 
-_FINE_RANGE_M = 1e9  # beyond, facets are so narrow that hiding is worked out on half pixels
 _TOUCHING_M = 1e-6
 _LOWEST_SINE = 0.05  # of the sun's height over the plane, for a shadow of finite length
 
@@ -62,32 +61,45 @@ class Artist:
     """Draws one rover (solids at given joints) from one head pose into one window of one camera."""
 
     def __init__(self, chain: Chain, solids: Solids, head_rad: Vec2, camera: int, window: Window) -> None:
-        self._chain, self._solids, self._camera, self._window = chain, solids, camera, window
+        self._chain, self._solids, self._head_rad, self._camera = chain, solids, head_rad, camera
+        self.window = window
         self._head = chain.site_ih(head_rad)
         self._eye = self._head.apply(chain.model.position_ih_m[camera][None])[0]
+        self._order: list[int] = []
+
+    def framing(self, stands: Stands, margin_px: int) -> Artist:
+        """One who draws no more of this window than rover and shadow at these poses take."""
+        fallen, _ = self._fallen(stands)
+        outline = np.concatenate([self._placed(self._solids.vertices_m, stands), fallen], axis=1)
+        uv = self._pixels(outline).reshape(-1, 2)
+        size = np.array([self.window.width, self.window.height])
+        low = np.clip(np.floor(uv.min(axis=0)) - margin_px, 0, size - 1).astype(int)
+        high = np.clip(np.ceil(uv.max(axis=0)) + margin_px, low + 1, size).astype(int)
+        corner = (self.window.u + int(low[0]), self.window.v + int(low[1]))
+        window = Window(*corner, int(high[0] - low[0]), int(high[1] - low[1]))
+        return Artist(self._chain, self._solids, self._head_rad, self._camera, window)
 
     def draw(self, stands: Stands) -> Drawing:
         """The rover at these poses; shades that none of them shows are left out."""
         range_m = float(np.linalg.norm(stands.position_m[0] - self._eye))
-        fine = 2 if range_m > _FINE_RANGE_M else 1
-        shares, shade_solid = self._facets(stands, fine)
+        shares, shade_solid = self._facets(stands)
         clear = np.ones((len(shares), *shares.shape[2:]), np.float32)
-        for solid in self._near_first(stands):
+        self._order = self._order or self._near_first(stands)
+        for solid in self._order:
             own = shade_solid == solid
             hidden = 1 - shares[:, own].sum(axis=1)
             shares[:, own] *= clear[:, None]
             clear *= np.clip(hidden, 0, 1)
-        shadow = self._shadow(stands, fine) * clear
+        shadow = self._shadow(stands) * clear
         sigma_px = self._blur_px(range_m)
-        down = _optics(self._window.height, fine, sigma_px)
-        across = _optics(self._window.width, fine, sigma_px).T
+        down, across = _blur(self.window.height, sigma_px), _blur(self.window.width, sigma_px).T
         return Drawing(down @ shares @ across, down @ clear @ across, down @ shadow @ across)
 
     def pixels_of(self, points_site_m: Array) -> Array:
         """Window coordinates (n, 2) of points (n, 3) in site [px]."""
-        return self._pixels(points_site_m, 1)
+        return self._pixels(points_site_m)
 
-    def _facets(self, stands: Stands, fine: int) -> tuple[Layers, NDArray[np.intp]]:
+    def _facets(self, stands: Stands) -> tuple[Layers, NDArray[np.intp]]:
         """Shares (n, s, h, w) of the shades that show, none hidden yet, and the solids that bear them."""
         solids = self._solids
         point = solids.point_m @ stands.rotation.transpose(0, 2, 1) + stands.position_m[:, None]
@@ -96,40 +108,44 @@ class Artist:
         shown = np.unique(solids.shade[faces.any(axis=0)])
         layer_of = np.full(len(solids.shade_solid), -1)
         layer_of[shown] = np.arange(len(shown))
-        uv = self._pixels(self._placed(solids.vertices_m, stands), fine)
+        uv = self._pixels(self._placed(solids.vertices_m, stands))
         seen = self._outlines(uv, faces, layer_of[solids.shade], len(shown))
-        shares = self._covered(seen, len(faces), len(shown), fine)
+        shares = self._covered(seen, len(faces), len(shown))
         for shade, base in zip(layer_of, solids.shade_over, strict=True):
             if shade >= 0 and base >= 0:
                 shares[:, layer_of[base]] -= shares[:, shade]
         return shares, solids.shade_solid[shown]
 
-    def _shadow(self, stands: Stands, fine: int) -> Layers:
+    def _shadow(self, stands: Stands) -> Layers:
         """Shares (n, h, w) of the plane under the rover that it keeps the sun off."""
-        solids, toward = self._solids, stands.toward_sun
-        up = stands.rotation[:, :, 2]
-        sine = np.maximum((toward * up).sum(axis=-1), _LOWEST_SINE)
-        points = self._placed(solids.vertices_m, stands)
-        height = ((points - stands.position_m[:, None]) * up[:, None]).sum(axis=-1)
-        fallen = points - (np.maximum(height, 0) / sine[:, None])[..., None] * toward[:, None]
+        solids = self._solids
+        fallen, toward = self._fallen(stands)
         lit = (solids.normal @ stands.rotation.transpose(0, 2, 1) @ toward[..., None])[..., 0] > 0
         lit &= solids.over < 0
         count = int(solids.solid.max()) + 1
-        seen = self._outlines(self._pixels(fallen, fine), lit, solids.solid, count)
-        shares = self._covered(seen, len(lit), count, fine)
+        seen = self._outlines(self._pixels(fallen), lit, solids.solid, count)
+        shares = self._covered(seen, len(lit), count)
         dark: Layers = 1 - np.prod(1 - np.clip(shares, 0, 1), axis=1)
         return dark
+
+    def _fallen(self, stands: Stands) -> tuple[Array, Array]:
+        """Where vertices (n, v, 3) throw their shadows, and the unit vectors (n, 3) towards the sun."""
+        toward, up = stands.toward_sun, stands.rotation[:, :, 2]
+        sine = np.maximum((toward * up).sum(axis=-1), _LOWEST_SINE)
+        points = self._placed(self._solids.vertices_m, stands)
+        height = ((points - stands.position_m[:, None]) * up[:, None]).sum(axis=-1)
+        fallen = points - (np.maximum(height, 0) / sine[:, None])[..., None] * toward[:, None]
+        return fallen, toward
 
     def _placed(self, points_m: Array, stands: Stands) -> Array:
         placed: Array = points_m @ stands.rotation.transpose(0, 2, 1) + stands.position_m[:, None]
         return placed
 
-    def _pixels(self, points_site_m: Array, fine: int) -> Array:
-        """Window coordinates (n, v, 2) of points, in parts of pixels, whole numbers at borders."""
+    def _pixels(self, points_site_m: Array) -> Array:
+        """Window coordinates (..., 2) of points (..., 3) [px], whole numbers at the pixels' borders."""
         flat = self._head.inverse().apply(points_site_m.reshape(-1, 3))
-        uv = self._chain.model.project(flat)[self._camera]
-        corner = (self._window.u - 0.5, self._window.v - 0.5)
-        return (np.nan_to_num(uv) - corner).reshape(points_site_m.shape[:-1] + (2,)) * fine
+        uv = self._chain.model.project(flat)[self._camera] - (self.window.u - 0.5, self.window.v - 0.5)
+        return np.asarray(np.nan_to_num(uv).reshape((*points_site_m.shape[:-1], 2)))
 
     def _outlines(self, uv: Array, facets: NDArray[np.bool_], layer: Array, layers: int) -> _Seen:
         """The edges of the facets chosen (n, f), each in the layer of its facet (f,)."""
@@ -139,10 +155,10 @@ class Artist:
         where = stand * layers + np.asarray(layer, dtype=np.intp)[solids.edge_facet[edge]]
         return _Seen(uv[stand, ends[:, 0]], uv[stand, ends[:, 1]], where)
 
-    def _covered(self, seen: _Seen, stands: int, layers: int, fine: int) -> Layers:
-        height, width = self._window.height * fine, self._window.width * fine
-        flat = coverage(seen.start, seen.end, seen.layer, (stands * layers, height, width))
-        return flat.reshape(stands, layers, height, width)
+    def _covered(self, seen: _Seen, stands: int, layers: int) -> Layers:
+        size = (self.window.height, self.window.width)
+        flat = coverage(seen.start, seen.end, seen.layer, (stands * layers, *size))
+        return flat.reshape(stands, layers, *size)
 
     def _near_first(self, stands: Stands) -> list[int]:
         """Solids in an order in which none is hidden by a later one, as the first pose shows them."""
@@ -175,11 +191,8 @@ class Artist:
         return math.hypot(sensor.psf_sigma_px, disc / 4)
 
 
-def _optics(pixels: int, fine: int, sigma_px: float) -> Layers:
-    """Matrix (pixels, pixels * fine) that blurs by a Gaussian and means over the parts of a pixel."""
-    parts = (np.arange(pixels * fine) + 0.5) / fine - 0.5
+def _blur(pixels: int, sigma_px: float) -> Layers:
+    """Matrix (pixels, pixels) that blurs by a Gaussian."""
     off = np.arange(pixels)[:, None] - np.arange(pixels)[None]
     gauss = np.exp(-0.5 * (off / sigma_px) ** 2)
-    gauss /= gauss.sum(axis=1, keepdims=True)
-    pool = (np.rint(parts)[None] == np.arange(pixels)[:, None]) / fine
-    return np.asarray(gauss @ pool, dtype=np.float32)
+    return np.asarray(gauss / gauss.sum(axis=1, keepdims=True), dtype=np.float32)

@@ -19,10 +19,10 @@ from perception.chain import Chain
 from perception.checks import as_finite
 from perception.passive.alignment import SIZE, Aligned, Start, align
 from perception.passive.background import lay_under
-from perception.passive.drawing import Artist
-from perception.passive.matching import Detail, Scene, first_detail, refined_detail
+from perception.passive.drawing import Artist, Stands
+from perception.passive.matching import Detail, Scene, first_detail, refined_detail, weigh
 from perception.passive.searching import search
-from perception.passive.solids import Solids, rover_solids
+from perception.passive.solids import rover_solids
 from perception.pose import chi2_limit
 from perception.prediction import Expectation
 from perception.roi import predicted_windows
@@ -31,14 +31,12 @@ from perception.rotation import skew
 _LOOSE_M, _LOOSE_RAD = 1.0, math.radians(30.0)
 _MARGIN_M = 0.45  # around the markers: the rest of the rover, its shadow, and ground to know again
 _FINE_MARGIN_PX = 5
-_FIRST_STEPS, _MOST_STEPS = 4, 12
-_STARTS = 2
+_STARTS, _FIRST_STEPS = 2, 5
+_ROUNDS, _MOST_STEPS = 2, 12  # each round weighs the pixels anew
 _GATE = 0.999
-_RIVAL = 20.0  # cost by which the best pose must lead
-_APART_SIGMAS = 5.0
 _LEAST_EXPLAINED = 0.5  # of what changed against the background
 _MOST_DETAIL = 0.3  # that the drawing may leave out, over the ground's brightness
-_FLOOR_PX = 0.03  # what background, drawing and lens calibration leave
+_FLOOR_PX = 0.05  # what background, drawing and lens calibration leave
 
 
 @dataclass(frozen=True)
@@ -51,11 +49,10 @@ class Ground:
 
 @dataclass(frozen=True)
 class Sun:
-    """Where the sun stands: azimuth from site x, left positive, elevation; both known to `sigma_rad` [rad]."""
+    """Where the sun stands, to a degree or so: azimuth from site x, left positive, and elevation [rad]."""
 
     azimuth_rad: float
     elevation_rad: float
-    sigma_rad: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,19 +110,28 @@ def passive_fix(
             return PassiveRefusal(f"{('left', 'right')[camera]} camera: {under.problem}")
         artist = Artist(chain, solids, state.head_rad, camera, window)
         scenes.append(Scene(image, noise, under, artist, focal_px / start.range_m))
-    found = []
+    near = []
     for guess in search(scenes, start, focal_px)[:_STARTS]:
-        close = _cropped(scenes, chain, solids, expectation, start, guess.parameters, windows)
+        close = [_cropped(s, start.stands(guess.parameters[None])) for s in scenes]
         details = [first_detail(s) for s in close]
-        first = align(close, start, guess.parameters, details, focal_px, _FIRST_STEPS)
-        details = [refined_detail(s, m) for s, m in zip(close, first.matches, strict=True)]
-        found.append((align(close, start, first.parameters, details, focal_px, _MOST_STEPS), close, details))
-    return _judged(chain, found, ground)
+        sigmas = _sigmas(close, start, guess.parameters, details)
+        near.append((align(close, start, guess.parameters, sigmas, focal_px, _FIRST_STEPS), close))
+    best, close = min(near, key=lambda n: n[0].cost)
+    for _ in range(_ROUNDS):
+        details = [refined_detail(s, m) for s, m in zip(close, best.matches, strict=True)]
+        sigmas = _sigmas(close, start, best.parameters, details)
+        best = align(close, start, best.parameters, sigmas, focal_px, _MOST_STEPS)
+    return _judged(chain, best, close, details, ground)
 
 
-def _mean(
-    name: str, frames: NDArray[np.uint16], window: Window, noise: float
-) -> tuple[Array, float]:
+def _sigmas(
+    scenes: Sequence[Scene], start: Start, parameters: Array, details: Sequence[Detail]
+) -> list[Array]:
+    stands = start.stands(parameters[None])
+    return [weigh(s, stands, d) for s, d in zip(scenes, details, strict=True)]
+
+
+def _mean(name: str, frames: NDArray[np.uint16], window: Window, noise: float) -> tuple[Array, float]:
     stack = as_finite(name, np.asarray(frames), (None, window.height, window.width))
     return stack.mean(axis=0), noise / math.sqrt(len(stack))
 
@@ -135,7 +141,7 @@ def _start(chain: Chain, expectation: Expectation, ground: Ground, sun: Sun) -> 
     level = chain.rig.rover.inclinometer_sigma_rad
     eye = chain.site_ih(expectation.state.head_rad).position_m
     position = np.array([*body.position_m[:2], ground.height_m])
-    sigma = np.array([_LOOSE_M, _LOOSE_M, _LOOSE_M, level, level, _LOOSE_RAD, sun.sigma_rad, sun.sigma_rad])
+    sigma = np.array([_LOOSE_M, _LOOSE_M, _LOOSE_M, level, level, _LOOSE_RAD])
     return Start(
         replace(body, position_m=position),
         np.array([sun.azimuth_rad, sun.elevation_rad]),
@@ -145,42 +151,19 @@ def _start(chain: Chain, expectation: Expectation, ground: Ground, sun: Sun) -> 
     )
 
 
-def _cropped(
-    scenes: Sequence[Scene],
-    chain: Chain,
-    solids: Solids,
-    expectation: Expectation,
-    start: Start,
-    parameters: Array,
-    windows: tuple[Window, Window],
-) -> list[Scene]:
-    """The scenes cut to the rover and its shadow at these parameters."""
-    cut = []
-    for camera, (scene, window) in enumerate(zip(scenes, windows, strict=True)):
-        drawn = scene.artist.draw(start.stands(parameters[None]))
-        rows, columns = (
-            np.flatnonzero((drawn.ground[0] - drawn.shadow[0] < 0.98).any(axis=axis)) for axis in (1, 0)
-        )
-        if not len(rows):
-            cut.append(scene)
-            continue
-        top, left = max(rows[0] - _FINE_MARGIN_PX, 0), max(columns[0] - _FINE_MARGIN_PX, 0)
-        part = np.s_[top : rows[-1] + 1 + _FINE_MARGIN_PX, left : columns[-1] + 1 + _FINE_MARGIN_PX]
-        image = scene.image[part]
-        under = replace(
-            scene.background, counts=scene.background.counts[part], sigma=scene.background.sigma[part]
-        )
-        small = Window(window.u + int(left), window.v + int(top), image.shape[1], image.shape[0])
-        artist = Artist(chain, solids, expectation.state.head_rad, camera, small)
-        cut.append(replace(scene, image=image, background=under, artist=artist))
-    return cut
+def _cropped(scene: Scene, stands: Stands) -> Scene:
+    """The scene cut to the rover and its shadow at this pose."""
+    artist = scene.artist.framing(stands, _FINE_MARGIN_PX)
+    top, left = artist.window.v - scene.artist.window.v, artist.window.u - scene.artist.window.u
+    part = np.s_[top : top + artist.window.height, left : left + artist.window.width]
+    whole = scene.background
+    under = replace(whole, counts=whole.counts[part], sigma=whole.sigma[part])
+    return replace(scene, image=scene.image[part], background=under, artist=artist)
 
 
-Found = tuple[Aligned, list[Scene], list[Detail]]
-
-
-def _judged(chain: Chain, found: list[Found], ground: Ground) -> PassiveFix | PassiveRefusal:
-    best, scenes, details = min(found, key=lambda f: f[0].cost)
+def _judged(
+    chain: Chain, best: Aligned, scenes: Sequence[Scene], details: Sequence[Detail], ground: Ground
+) -> PassiveFix | PassiveRefusal:
     if not best.converged:
         return PassiveRefusal("no best pose was reached")
     for scene, detail in zip(scenes, details, strict=True):
@@ -207,7 +190,7 @@ def _judged(chain: Chain, found: list[Found], ground: Ground) -> PassiveFix | Pa
 def _explained(best: Aligned, scenes: Sequence[Scene]) -> float:
     """Share of the change against the background that rover and shadow account for."""
     changed = sum(float(((s.image - s.background.counts) ** 2).sum()) for s in scenes)
-    left = sum(float((m.unexplained**2).sum()) for m in best.matches)
+    left = sum(float((m.residual[0] ** 2).sum()) for m in best.matches)
     return 1 - left / max(changed, 1e-9)
 
 
@@ -238,5 +221,6 @@ def _floor(chain: Chain, best: Aligned) -> Array:
     across = _FLOOR_PX * range_m / focal_px
     floor = np.zeros((6, 6))
     floor[:3, :3] = across**2 * np.eye(3) + along**2 * np.outer(sight, sight)
+    floor[3, 3] = floor[4, 4] = chain.rig.rover.inclinometer_sigma_rad**2
     floor[5, 5] = (across / 0.15) ** 2
     return floor

@@ -6,7 +6,6 @@ explain the image best are solved for (variable projection), so that only geomet
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -22,7 +21,6 @@ _DETAIL = 0.05  # first guess of what the drawing leaves out, over the ground's 
 _SHADOW_DETAIL = 0.3
 _LEAST_DETAIL = 0.01
 _UNEVEN_M = 0.015  # of the ground about the plane that the shadow is drawn on
-_CLIP = 4.0  # residuals beyond so many sigmas count no more than these
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,17 +50,10 @@ class Detail:
 
 @dataclass(frozen=True, eq=False)
 class Match:
-    """Residuals (n, h, w) in sigmas of n poses, with what they were made of at the first one."""
+    """Residuals (n, h, w) of n poses [counts], and how the first of them is drawn."""
 
     residual: Array
     drawing: Drawing
-    unexplained: Array
-
-    @property
-    def cost(self) -> Array:
-        """Sum of squares (n,), large residuals held back."""
-        total: Array = np.minimum(self.residual**2, _CLIP**2).sum(axis=(1, 2))
-        return total
 
 
 def first_detail(scene: Scene) -> Detail:
@@ -70,27 +61,32 @@ def first_detail(scene: Scene) -> Detail:
     return Detail(_DETAIL * scene.brightness, _SHADOW_DETAIL * scene.brightness)
 
 
-def match(scene: Scene, stands: Stands, detail: Detail) -> Match:
-    """Explain the image by each of the poses; weights are those of the first one."""
+def weigh(scene: Scene, stands: Stands, detail: Detail) -> Array:
+    """How far each pixel (h, w) may be off what is drawn [counts], with the rover at the first pose."""
     drawing = scene.artist.draw(stands)
-    sigma = _sigma(scene, drawing, detail)
-    background = scene.background.counts
-    target = (scene.image - background * drawing.ground) / sigma
-    columns = np.concatenate(
-        [drawing.shades, (-background * drawing.shadow)[:, None]], axis=1, dtype=np.float32
-    )
-    columns /= sigma.astype(np.float32)
+    rover = drawing.shades[0].sum(axis=0)
+    variance = scene.noise**2 + drawing.ground[0] * scene.background.sigma**2
+    variance = variance + rover * detail.rover**2 + _about_shadow(scene, drawing) * detail.shadow**2
+    sigma: Array = np.sqrt(variance)
+    return sigma
+
+
+def match(scene: Scene, stands: Stands, sigma: Array) -> Match:
+    """Explain the image by each of the poses, pixels weighed by their `sigma` (h, w)."""
+    drawing = scene.artist.draw(stands)
+    background = scene.background.counts.astype(np.float32)
+    inverse = (1 / sigma).astype(np.float32)
+    target = (scene.image.astype(np.float32) - background * drawing.ground) * inverse
+    columns = np.concatenate([drawing.shades, (-background * drawing.shadow)[:, None]], axis=1) * inverse
     n, k = columns.shape[:2]
-    A = columns.reshape(n, k, -1)
-    b = target.reshape(n, -1, 1).astype(np.float32)
+    A, b = columns.reshape(n, k, -1), target.reshape(n, -1, 1)
     expected = np.append(np.full(k - 1, scene.brightness), _SHADOW)
     weight = np.append(np.full(k - 1, _SHADE_SIGMA * scene.brightness), _SHADOW_SIGMA) ** -2.0
     gram = (A @ A.transpose(0, 2, 1)).astype(np.float64) + np.diag(weight)
     right = (A @ b).astype(np.float64)[..., 0] + weight * expected
     level = np.linalg.solve(gram, right[..., None]).astype(np.float32)
     rest = (b - A.transpose(0, 2, 1) @ level)[..., 0]
-    residual = rest.reshape(n, *sigma.shape).astype(np.float64)
-    return Match(residual, drawing, residual[0] * sigma)
+    return Match(rest.reshape(n, *sigma.shape).astype(np.float64) * sigma, drawing)
 
 
 def refined_detail(scene: Scene, found: Match) -> Detail:
@@ -98,23 +94,9 @@ def refined_detail(scene: Scene, found: Match) -> Detail:
     least = _LEAST_DETAIL * scene.brightness
     rover = found.drawing.shades[0].sum(axis=0)
     return Detail(
-        max(_rms(found.unexplained[rover > 0.5]), least),
-        max(_rms(found.unexplained[_about_shadow(scene, found.drawing) > 0.5]), least),
+        max(_rms(found.residual[0][rover > 0.5]), least),
+        max(_rms(found.residual[0][_about_shadow(scene, found.drawing) > 0.5]), least),
     )
-
-
-def joint_cost(matches: Sequence[Match]) -> Array:
-    """Cost (n,) of both cameras."""
-    total: Array = np.sum([one.cost for one in matches], axis=0)
-    return total
-
-
-def _sigma(scene: Scene, drawing: Drawing, detail: Detail) -> Array:
-    rover = drawing.shades[0].sum(axis=0)
-    variance = scene.noise**2 + drawing.ground[0] * scene.background.sigma**2
-    variance = variance + rover * detail.rover**2 + _about_shadow(scene, drawing) * detail.shadow**2
-    sigma: Array = np.sqrt(variance)
-    return sigma
 
 
 def _about_shadow(scene: Scene, drawing: Drawing) -> Array:

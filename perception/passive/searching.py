@@ -15,12 +15,13 @@ from perception.passive.matching import Scene
 _CHANGED = 3.0  # sigmas from which a pixel speaks for the rover rather than for the ground
 _MOST = 6.0
 _HEADINGS_RAD = np.radians([-10.0, -5.0, 0.0, 5.0, 10.0])
+_MARGIN_PX = 2
 _REACH_M, _STEP_ALONG_M = 0.30, 0.03
 
 
 @dataclass(frozen=True, eq=False)
 class Guess:
-    """Parameters (8,) to start from and their score."""
+    """Parameters (6,) to start from and their score."""
 
     parameters: Array
     score: float
@@ -36,12 +37,14 @@ def search(scenes: Sequence[Scene], start: Start, focal_px: float) -> list[Guess
     grid = np.zeros((len(along) * len(across), SIZE))
     grid[:, 0], grid[:, 1] = (m.ravel() for m in np.meshgrid(along, across, indexing="ij"))
     total = np.zeros((len(turned), len(grid)))
+    places = start.site_body.position_m + grid[:, :3] @ start.axes.T
     for scene in scenes:
-        outlines = scene.artist.draw(start.stands(turned))
-        covered = 1 - outlines.ground + outlines.shadow
-        centre = scene.artist.pixels_of(start.site_body.position_m[None])
-        shifts = np.rint(scene.artist.pixels_of(start.stands(grid).position_m) - centre).astype(int)
-        total += _overlaps(_evidence(scene), covered, shifts)
+        artist = scene.artist.framing(start.stands(turned), _MARGIN_PX)
+        outlines = artist.draw(start.stands(turned))
+        corner = (artist.window.u - scene.artist.window.u, artist.window.v - scene.artist.window.v)
+        here = scene.artist.pixels_of(start.site_body.position_m[None])
+        moves = np.rint(scene.artist.pixels_of(places) - here).astype(int)
+        total += _overlaps(_evidence(scene), 1 - outlines.ground + outlines.shadow, moves + corner)
     guesses = []
     for heading, scores in zip(turned, total, strict=True):
         best = int(np.argmax(scores))
@@ -56,12 +59,14 @@ def _evidence(scene: Scene) -> Array:
     return evidence
 
 
-def _overlaps(evidence: Array, covered: Array, shifts: Array) -> Array:
-    """Evidence (n, m) inside outlines (n, h, w) moved by whole pixels (m, 2) as (right, down)."""
-    reach = int(np.abs(shifts).max())
+def _overlaps(evidence: Array, covered: Array, places: Array) -> Array:
+    """Evidence (n, m) inside outlines (n, h, w) with their corners at whole pixels (m, 2), column and row."""
+    reach = max(covered.shape[1:]) + int(np.abs(places).max())
     padded = np.pad(evidence, reach, constant_values=-_CHANGED).astype(np.float32)
+    low, high = places.min(axis=0) + reach, places.max(axis=0) + reach
+    part = padded[low[1] : high[1] + covered.shape[1], low[0] : high[0] + covered.shape[2]]
     scores = []
     for outline in covered:
-        field = cv2.matchTemplate(padded, outline.astype(np.float32), cv2.TM_CCORR)
-        scores.append(field[shifts[:, 1] + reach, shifts[:, 0] + reach])
+        field = cv2.matchTemplate(part, outline.astype(np.float32), cv2.TM_CCORR)
+        scores.append(field[places[:, 1] + reach - low[1], places[:, 0] + reach - low[0]])
     return np.asarray(scores, dtype=np.float64)

@@ -150,7 +150,6 @@ def draw(range_m: float, wrong: Wrong, rng: np.random.Generator) -> Setting:
     sun = Sun(
         true_sun.azimuth_rad + SUN_SIGMA_RAD * rng.standard_normal(),
         true_sun.elevation_rad + SUN_SIGMA_RAD * rng.standard_normal(),
-        SUN_SIGMA_RAD,
     )
     ground = Ground(float(surveyed), SURVEY_SIGMA_M)
     return Setting(body, chain, expectation, ground, sun, windows, images, backgrounds)
