@@ -23,7 +23,7 @@ _STEP_PX = 0.1
 _CORRELATED_PX = 2.0  # how far what a drawing leaves out reaches from pixel to pixel
 _ALIKE = 8.0  # pixels that err alike, and count as one
 _OUTLIER = 4.0  # sigmas
-_ENOUGH = 0.02  # of twice the log likelihood: a seventh of a sigma
+_ENOUGH = 0.05  # of twice the log likelihood: a fifth of a sigma
 
 
 @dataclass(frozen=True, eq=False)

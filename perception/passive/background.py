@@ -20,7 +20,7 @@ _STEPS = 8
 _OUTLIER = 3.0  # spreads from which a pixel counts for another thing than ground
 _MAD = 1.4826
 _LEAST_GROUND = 0.5  # share of the view that must be ground as seen before
-_LEAST_EXPLAINED = 0.2  # of the ground's texture, by variance
+_LEAST_EXPLAINED = 0.1  # of the ground's texture, by variance
 _PLAIN = 2.5  # noises of texture below which there is nothing to recognise
 _SHIFT_NOISE_PX = 0.03
 

@@ -31,8 +31,8 @@ from perception.rotation import skew
 _LOOSE_M, _LOOSE_RAD = 1.0, math.radians(30.0)
 _MARGIN_M = 0.45  # around the markers: the rest of the rover, its shadow, and ground to know again
 _FINE_MARGIN_PX = 5
-_STARTS, _FIRST_STEPS = 2, 5
-_ROUNDS, _MOST_STEPS = 2, 12  # each round weighs the pixels anew
+_FIRST_STEPS, _FINALISTS, _MORE_STEPS = 1, 2, 3
+_ROUNDS, _MOST_STEPS = 2, 15  # each round weighs the pixels anew
 _GATE = 0.999
 _LEAST_EXPLAINED = 0.5  # of what changed against the background
 _MOST_DETAIL = 0.3  # that the drawing may leave out, over the ground's brightness
@@ -110,18 +110,27 @@ def passive_fix(
             return PassiveRefusal(f"{('left', 'right')[camera]} camera: {under.problem}")
         artist = Artist(chain, solids, state.head_rad, camera, window)
         scenes.append(Scene(image, noise, under, artist, focal_px / start.range_m))
-    near = []
-    for guess in search(scenes, start, focal_px)[:_STARTS]:
-        close = [_cropped(s, start.stands(guess.parameters[None])) for s in scenes]
-        details = [first_detail(s) for s in close]
-        sigmas = _sigmas(close, start, guess.parameters, details)
-        near.append((align(close, start, guess.parameters, sigmas, focal_px, _FIRST_STEPS), close))
-    best, close = min(near, key=lambda n: n[0].cost)
+    best, close = _approached(scenes, start, focal_px)
     for _ in range(_ROUNDS):
         details = [refined_detail(s, m) for s, m in zip(close, best.matches, strict=True)]
         sigmas = _sigmas(close, start, best.parameters, details)
         best = align(close, start, best.parameters, sigmas, focal_px, _MOST_STEPS)
     return _judged(chain, best, close, details, ground)
+
+
+def _approached(scenes: Sequence[Scene], start: Start, focal_px: float) -> tuple[Aligned, list[Scene]]:
+    """The best of the starts, and the scenes cut to where it led: each round goes on with fewer of them."""
+    near = []
+    for guess in search(scenes, start, focal_px):
+        close = [_cropped(s, start.stands(guess.parameters[None])) for s in scenes]
+        sigmas = _sigmas(close, start, guess.parameters, [first_detail(s) for s in close])
+        near.append((align(close, start, guess.parameters, sigmas, focal_px, _FIRST_STEPS), close, sigmas))
+    near = sorted(near, key=lambda n: n[0].cost)[:_FINALISTS]
+    further = [
+        (align(close, start, found.parameters, sigmas, focal_px, _MORE_STEPS), close)
+        for found, close, sigmas in near
+    ]
+    return min(further, key=lambda f: f[0].cost)
 
 
 def _sigmas(

@@ -14,7 +14,7 @@ from perception.passive.matching import Scene
 
 _CHANGED = 3.0  # sigmas from which a pixel speaks for the rover rather than for the ground
 _MOST = 6.0
-_HEADINGS_RAD = np.radians([-10.0, -5.0, 0.0, 5.0, 10.0])
+_HEADINGS_RAD = np.radians([-12.0, -6.0, 0.0, 6.0, 12.0])
 _MARGIN_PX = 2
 _REACH_M, _STEP_ALONG_M = 0.30, 0.03
 
