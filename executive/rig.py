@@ -93,9 +93,9 @@ class ShapeCalibration:
     """The rover's solids as drawn: two belts (flat with round ends), chassis, arm and cabin as boxes.
 
     Belts: `belt_shorter_m` less than the rover's length, as wide as the rover exceeds its gauge. The chassis
-    hangs between them with `chassis_gap_m` in all, its belly `belly_clearance_m` over the ground. The arm's bar
-    runs from its pivot to the cabin's; the cabin's top is the marker plane. Painted on the cabin: a plate of
-    `plate_m` (length, width) on its top, an opening of `opening_m` (width, height) in its front.
+    hangs between them with `chassis_gap_m` in all, its belly `belly_clearance_m` over the ground. The arm's
+    bar runs from its pivot to the cabin's; the cabin's top is the marker plane. Painted on the cabin: a plate
+    of `plate_m` (length, width) on its top, an opening of `opening_m` (width, height) in its front.
     """
 
     belt_radius_m: float = 0.033

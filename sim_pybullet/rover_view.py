@@ -20,8 +20,8 @@ from sim_pybullet.sunlight import SKYLIGHT, Sun
 Image = NDArray[np.float32]
 
 _SHIFT = 6  # fractional bits of polygon corners
-# OpenCV paints every sample that an outline touches, half a sample too many on each side. Samples a pixel, by the
-# size [px] up to which they are affordable: a rover far away must not look larger than it is.
+# OpenCV paints every sample that an outline touches, half a sample too many on each side. Samples a pixel, by
+# the size [px] up to which they are affordable: a rover far away must not look larger than it is.
 _SAMPLES = ((70.0, 16), (140.0, 8), (260.0, 4))
 _TOUCHING_M = 2e-4  # less than the millimetre between arm and cabin
 _LEAST_SINE = 0.03  # of the sun's height over the ground

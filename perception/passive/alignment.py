@@ -28,7 +28,7 @@ _ENOUGH = 0.05  # of twice the log likelihood: a fifth of a sigma
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Where parameters are zero, and what is known of them besides the images: `sigma` (6,) about `mean` (6,)."""
+    """Where parameters are zero, and what is known besides the images: `sigma` (6,) about `mean` (6,)."""
 
     site_body: Transform
     sun_rad: Array
@@ -106,7 +106,8 @@ def align(
         H, g = _normal_equations(at, sigmas, probes)
         H[range(SIZE), range(SIZE)] += weight
         g += weight * (start.mean - parameters)
-        step = _limited(np.linalg.solve(H + damping * np.diag(np.diag(H)), g), start, focal_px)
+        whole = np.asarray(np.linalg.solve(H + damping * np.diag(np.diag(H)), g), dtype=np.float64)
+        step = _limited(whole, start, focal_px)
         ahead = float(step @ (2 * g - H @ step))
         if ahead < _ENOUGH:
             converged = True

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from executive.types import Array, Vec2, Window
 from perception.chain import Chain
 from perception.passive.coverage import Layers, coverage
-from perception.passive.solids import Solids
+from perception.passive.hiding import near_first
+from perception.passive.solids import Indices, Solids
+from perception.psf import marker_spread
 
-_TOUCHING_M = 1e-6
 _LOWEST_SINE = 0.05  # of the sun's height over the plane, for a shadow of finite length
 
 
@@ -54,7 +55,7 @@ class _Seen:
 
     start: Array
     end: Array
-    layer: NDArray[np.intp]
+    layer: Indices
 
 
 class Artist:
@@ -62,16 +63,16 @@ class Artist:
 
     def __init__(self, chain: Chain, solids: Solids, head_rad: Vec2, camera: int, window: Window) -> None:
         self._chain, self._solids, self._head_rad, self._camera = chain, solids, head_rad, camera
-        self.window = window
+        self.window, self._model = window, chain.model.camera(camera)
         self._head = chain.site_ih(head_rad)
         self._eye = self._head.apply(chain.model.position_ih_m[camera][None])[0]
-        self._order: list[int] = []
+        self._order: tuple[int, ...] = ()
 
     def framing(self, stands: Stands, margin_px: int) -> Artist:
         """One who draws no more of this window than rover and shadow at these poses take."""
         fallen, _ = self._fallen(stands)
         outline = np.concatenate([self._placed(self._solids.vertices_m, stands), fallen], axis=1)
-        uv = self._pixels(outline).reshape(-1, 2)
+        uv = self.pixels_of(outline).reshape(-1, 2)
         size = np.array([self.window.width, self.window.height])
         low = np.clip(np.floor(uv.min(axis=0)) - margin_px, 0, size - 1).astype(int)
         high = np.clip(np.ceil(uv.max(axis=0)) + margin_px, low + 1, size).astype(int)
@@ -84,31 +85,39 @@ class Artist:
         range_m = float(np.linalg.norm(stands.position_m[0] - self._eye))
         shares, shade_solid = self._facets(stands)
         clear = np.ones((len(shares), *shares.shape[2:]), np.float32)
-        self._order = self._order or self._near_first(stands)
-        for solid in self._order:
+        for solid in self._near_first(stands):
             own = shade_solid == solid
             hidden = 1 - shares[:, own].sum(axis=1)
             shares[:, own] *= clear[:, None]
             clear *= np.clip(hidden, 0, 1)
         shadow = self._shadow(stands) * clear
-        sigma_px = self._blur_px(range_m)
-        down, across = _blur(self.window.height, sigma_px), _blur(self.window.width, sigma_px).T
-        return Drawing(down @ shares @ across, down @ clear @ across, down @ shadow @ across)
+        sigma_px = marker_spread(self._chain.rig, range_m).sigma_px
+        shades, dark = _blurred(shares, sigma_px), _blurred(shadow, sigma_px)
+        return Drawing(shades, 1 - shades.sum(axis=1), dark)
 
     def pixels_of(self, points_site_m: Array) -> Array:
-        """Window coordinates (n, 2) of points (n, 3) in site [px]."""
-        return self._pixels(points_site_m)
+        """Window coordinates (..., 2) of points (..., 3) in site [px]; pixels end at whole ones."""
+        flat = self._head.inverse().apply(points_site_m.reshape(-1, 3))
+        uv = self._model.project(flat)[0] - (self.window.u - 0.5, self.window.v - 0.5)
+        return np.asarray(np.nan_to_num(uv).reshape((*points_site_m.shape[:-1], 2)))
 
-    def _facets(self, stands: Stands) -> tuple[Layers, NDArray[np.intp]]:
+    def _near_first(self, stands: Stands) -> tuple[int, ...]:
+        """The order in which solids hide one another, as the first pose ever drawn shows them."""
+        if not self._order:
+            eye = stands.rotation[0].T @ (self._eye - stands.position_m[0])
+            self._order = near_first(self._solids, eye)
+        return self._order
+
+    def _facets(self, stands: Stands) -> tuple[Layers, Indices]:
         """Shares (n, s, h, w) of the shades that show, none hidden yet, and the solids that bear them."""
         solids = self._solids
-        point = solids.point_m @ stands.rotation.transpose(0, 2, 1) + stands.position_m[:, None]
+        point = self._placed(solids.point_m, stands)
         normal = solids.normal @ stands.rotation.transpose(0, 2, 1)
         faces = ((self._eye - point) * normal).sum(axis=-1) > 0
         shown = np.unique(solids.shade[faces.any(axis=0)])
         layer_of = np.full(len(solids.shade_solid), -1)
         layer_of[shown] = np.arange(len(shown))
-        uv = self._pixels(self._placed(solids.vertices_m, stands))
+        uv = self.pixels_of(self._placed(solids.vertices_m, stands))
         seen = self._outlines(uv, faces, layer_of[solids.shade], len(shown))
         shares = self._covered(seen, len(faces), len(shown))
         for shade, base in zip(layer_of, solids.shade_over, strict=True):
@@ -123,7 +132,7 @@ class Artist:
         lit = (solids.normal @ stands.rotation.transpose(0, 2, 1) @ toward[..., None])[..., 0] > 0
         lit &= solids.over < 0
         count = int(solids.solid.max()) + 1
-        seen = self._outlines(self._pixels(fallen), lit, solids.solid, count)
+        seen = self._outlines(self.pixels_of(fallen), lit, solids.solid, count)
         shares = self._covered(seen, len(lit), count)
         dark: Layers = 1 - np.prod(1 - np.clip(shares, 0, 1), axis=1)
         return dark
@@ -141,18 +150,12 @@ class Artist:
         placed: Array = points_m @ stands.rotation.transpose(0, 2, 1) + stands.position_m[:, None]
         return placed
 
-    def _pixels(self, points_site_m: Array) -> Array:
-        """Window coordinates (..., 2) of points (..., 3) [px], whole numbers at the pixels' borders."""
-        flat = self._head.inverse().apply(points_site_m.reshape(-1, 3))
-        uv = self._chain.model.project(flat)[self._camera] - (self.window.u - 0.5, self.window.v - 0.5)
-        return np.asarray(np.nan_to_num(uv).reshape((*points_site_m.shape[:-1], 2)))
-
-    def _outlines(self, uv: Array, facets: NDArray[np.bool_], layer: Array, layers: int) -> _Seen:
+    def _outlines(self, uv: Array, facets: NDArray[np.bool_], layer: Indices, layers: int) -> _Seen:
         """The edges of the facets chosen (n, f), each in the layer of its facet (f,)."""
         solids = self._solids
         stand, edge = np.nonzero(facets[:, solids.edge_facet])
         ends = solids.edges[edge]
-        where = stand * layers + np.asarray(layer, dtype=np.intp)[solids.edge_facet[edge]]
+        where = stand * layers + layer[solids.edge_facet[edge]]
         return _Seen(uv[stand, ends[:, 0]], uv[stand, ends[:, 1]], where)
 
     def _covered(self, seen: _Seen, stands: int, layers: int) -> Layers:
@@ -160,39 +163,17 @@ class Artist:
         flat = coverage(seen.start, seen.end, seen.layer, (stands * layers, *size))
         return flat.reshape(stands, layers, *size)
 
-    def _near_first(self, stands: Stands) -> list[int]:
-        """Solids in an order in which none is hidden by a later one, as the first pose shows them."""
-        solids = self._solids
-        eye = stands.rotation[0].T @ (self._eye - stands.position_m[0])
-        waiting = list(range(int(solids.solid.max()) + 1))
-        order: list[int] = []
-        while waiting:
-            free = [s for s in waiting if not any(self._hides(o, s, eye) for o in waiting if o != s)]
-            chosen = (free or waiting)[0]
-            order.append(chosen)
-            waiting.remove(chosen)
-        return order
 
-    def _hides(self, front: int, back: int, eye: Array) -> bool:
-        """Whether some facet's plane has `front` on the eye's side and `back` on the other."""
-        solids = self._solids
-        for solid, other, sign in ((back, front, 1.0), (front, back, -1.0)):
-            mine = solids.solid == solid
-            point, normal = solids.point_m[mine], solids.normal[mine]
-            toward = sign * ((eye - point) * normal).sum(axis=-1) > 0
-            depth = (solids.solid_vertices(other)[None] - point[:, None]) @ normal[..., None]
-            if (toward & (depth[..., 0] > -_TOUCHING_M).all(axis=1)).any():
-                return True
-        return False
-
-    def _blur_px(self, range_m: float) -> float:
-        sensor = self._chain.rig.sensor
-        disc = sensor.defocus_px_m * abs(1 / range_m - 1 / sensor.focus_m)
-        return math.hypot(sensor.psf_sigma_px, disc / 4)
-
-
-def _blur(pixels: int, sigma_px: float) -> Layers:
-    """Matrix (pixels, pixels) that blurs by a Gaussian."""
-    off = np.arange(pixels)[:, None] - np.arange(pixels)[None]
-    gauss = np.exp(-0.5 * (off / sigma_px) ** 2)
-    return np.asarray(gauss / gauss.sum(axis=1, keepdims=True), dtype=np.float32)
+def _blurred(layers: Layers, sigma_px: float) -> Layers:
+    """Layers (..., h, w) blurred by a Gaussian; nothing lies beyond their edges."""
+    reach = min(math.ceil(3 * sigma_px), *(n - 1 for n in layers.shape[-2:]))
+    kernel = np.exp(-0.5 * (np.arange(reach + 1) / sigma_px) ** 2).astype(np.float32)
+    kernel /= 2 * kernel.sum() - kernel[0]
+    for axis in (-1, -2):
+        turned = np.moveaxis(layers, axis, -1)
+        out = turned * kernel[0]
+        for step, weight in enumerate(kernel[1:], 1):
+            out[..., step:] += weight * turned[..., :-step]
+            out[..., :-step] += weight * turned[..., step:]
+        layers = np.moveaxis(out, -1, axis)
+    return layers

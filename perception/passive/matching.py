@@ -1,7 +1,7 @@
 """How well a pose explains the images: ground where nothing hides it, shades where the rover is, its shadow.
 
-What the rover's shades and its shadow look like in this light is not known: for each pose the brightnesses that
-explain the image best are solved for (variable projection), so that only geometry is left to judge.
+What the rover's shades and its shadow look like in this light is not known: for each pose the brightnesses
+that explain the image best are solved for (variable projection), so that only geometry is left to judge.
 """
 
 from __future__ import annotations

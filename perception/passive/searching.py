@@ -10,7 +10,9 @@ import numpy as np
 
 from executive.types import Array
 from perception.passive.alignment import SIZE, Start
+from perception.passive.coverage import Layers
 from perception.passive.matching import Scene
+from perception.passive.solids import Indices
 
 _CHANGED = 3.0  # sigmas from which a pixel speaks for the rover rather than for the ground
 _MOST = 6.0
@@ -43,7 +45,7 @@ def search(scenes: Sequence[Scene], start: Start, focal_px: float) -> list[Guess
         outlines = artist.draw(start.stands(turned))
         corner = (artist.window.u - scene.artist.window.u, artist.window.v - scene.artist.window.v)
         here = scene.artist.pixels_of(start.site_body.position_m[None])
-        moves = np.rint(scene.artist.pixels_of(places) - here).astype(int)
+        moves: Indices = np.rint(scene.artist.pixels_of(places) - here).astype(np.intp)
         total += _overlaps(_evidence(scene), 1 - outlines.ground + outlines.shadow, moves + corner)
     guesses = []
     for heading, scores in zip(turned, total, strict=True):
@@ -59,7 +61,7 @@ def _evidence(scene: Scene) -> Array:
     return evidence
 
 
-def _overlaps(evidence: Array, covered: Array, places: Array) -> Array:
+def _overlaps(evidence: Array, covered: Layers, places: Indices) -> Array:
     """Evidence (n, m) inside outlines (n, h, w) with their corners at whole pixels (m, 2), column and row."""
     reach = max(covered.shape[1:]) + int(np.abs(places).max())
     padded = np.pad(evidence, reach, constant_values=-_CHANGED).astype(np.float32)

@@ -27,9 +27,9 @@ class Solids:
     """All facets, stacked. Facets wind counter-clockwise seen from outside.
 
     `vertices_m` (v, 3); `edges` (e, 2) from vertex to vertex, of facet `edge_facet` (e,). Per facet (f,): a
-    `point_m` (f, 3) on it, its outward `normal` (f, 3), the `shade` that it is painted with (facets of one
-    shade are equally bright), the `solid` that it belongs to, and the shade `over` which it is painted, -1 for
-    none. `shade_solid` (s,) is the solid of a shade.
+    `point_m` (f, 3) on it, its outward `normal` (f, 3), its `shade` (facets of one shade are equally bright),
+    its `solid`, and the shade `over` which it is painted, -1 for none. Per shade (s,): `shade_solid` and
+    `shade_over`.
     """
 
     vertices_m: Array
@@ -85,7 +85,7 @@ def _box(solid: int, frame: Transform, centre_m: Sequence[float], size_m: Sequen
     facets = []
     for axis in range(3):
         for sign in (-1.0, 1.0):
-            square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * size_m_of(size_m, axis) / 2
+            square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * _sides_across(size_m, axis) / 2
             if sign < 0:
                 square = square[::-1]
             corners = np.empty((4, 3))
@@ -96,14 +96,14 @@ def _box(solid: int, frame: Transform, centre_m: Sequence[float], size_m: Sequen
     return facets
 
 
-def size_m_of(size_m: Sequence[float], axis: int) -> Array:
+def _sides_across(size_m: Sequence[float], axis: int) -> Array:
     """The two sides of a box's facet across `axis`."""
     return np.array([size_m[(axis + 1) % 3], size_m[(axis + 2) % 3]])
 
 
 def _marks(rig: RigCalibration, plc: Transform) -> list[_Facet]:
     """The plate on the cabin's top and the opening in its front."""
-    length, width, height = rig.shape.cabin_size_m
+    length, _, height = rig.shape.cabin_size_m
     square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) / 2
     top = np.column_stack([square * rig.shape.plate_m, np.zeros(4)])
     across, up = (square * rig.shape.opening_m).T
@@ -120,7 +120,9 @@ def _belt(rig: RigCalibration, solid: int, y_m: float, width_m: float) -> list[_
     flat = rig.rover.length_m - rig.shape.belt_shorter_m - 2 * radius
     angle = np.linspace(-np.pi / 2, np.pi / 2, _ARC_STEPS + 1)
     front = np.column_stack([flat / 2 + radius * np.cos(angle), radius * np.sin(angle)])
-    rim = np.vstack([front, -front]) + [0.0, radius]  # counter-clockwise in (x, z), from below the front
+    rim = np.vstack([front, -front]) + np.array(
+        [0.0, radius]
+    )  # counter-clockwise in (x, z), from below the front
     facets = []
     low, high = y_m - width_m / 2, y_m + width_m / 2
     for i, (a, b) in enumerate(zip(rim, np.roll(rim, -1, axis=0), strict=True)):

@@ -1,8 +1,8 @@
 """One passive localisation from images of the full tier: ground, rover, shadow and noise by the simulator.
 
 Everything that errs is drawn anew in each trial as the rig's calibration says: head (once for the empty view,
-once for that of the rover), joints, inclinometers, the surveyed height; the prediction is 150 mm and 10 degrees
-off. All LEDs are dead. What can be wrong is told by `Wrong`.
+once for that of the rover), joints, inclinometers, the surveyed height; the prediction is 150 mm and 10
+degrees off. All LEDs are dead. What can be wrong is told by `Wrong`.
 """
 
 from __future__ import annotations
