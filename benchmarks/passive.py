@@ -118,12 +118,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--trials", type=int, default=300)
     parser.add_argument("--ranges", type=float, nargs="+", default=list(RANGES_M))
+    parser.add_argument("--wrong", type=Wrong, nargs="+", default=list(Wrong), choices=list(Wrong))
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     failures = []
     print(HEAD, flush=True)
     with ProcessPoolExecutor(options.jobs) as pool:
-        for wrong in Wrong:
+        for wrong in options.wrong:
             for range_m in options.ranges:
                 work = partial(one, range_m, wrong)
                 row = Row.of(range_m, wrong, list(pool.map(work, range(options.trials), chunksize=4)))

@@ -87,7 +87,7 @@ def passive_fix(
         details = [refined_detail(s, m) for s, m in zip(close, best.matches, strict=True)]
         sigmas = _sigmas(close, start, best.parameters, details)
         best = align(close, start, best.parameters, sigmas, focal_px, _MOST_STEPS)
-    return judged(chain, best, close, details, ground)
+    return judged(coarse, best, close, details, ground)
 
 
 def _approached(scenes: Sequence[Scene], start: Start, focal_px: float) -> tuple[Aligned, list[Scene]]:

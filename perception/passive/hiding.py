@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from executive.types import Array
 from perception.passive.solids import Solids
 
@@ -11,19 +13,20 @@ _TOUCHING_M = 1e-6
 def near_first(solids: Solids, eye_body_m: Array) -> tuple[int, ...]:
     """Solids in an order in which none is hidden by a later one, seen from a point (3,) in `body`.
 
-    Solids that pass through each other may hide one another in a ring; one of them is then taken first.
+    Where no facet's plane tells, the one goes first that fewest others can hide, of such the nearest.
     """
     waiting = list(range(int(solids.solid.max()) + 1))
+    away = [float(np.linalg.norm(solids.solid_vertices(s).mean(axis=0) - eye_body_m)) for s in waiting]
     order: list[int] = []
     while waiting:
-        free = [s for s in waiting if not any(_hides(solids, o, s, eye_body_m) for o in waiting if o != s)]
-        order.append((free or waiting)[0])
+        clear = {s: sum(_clear_of(solids, s, o, eye_body_m) for o in waiting if o != s) for s in waiting}
+        order.append(max(waiting, key=lambda s: (clear[s], -away[s])))  # noqa: B023 - used at once
         waiting.remove(order[-1])
     return tuple(order)
 
 
-def _hides(solids: Solids, front: int, back: int, eye: Array) -> bool:
-    """Whether some facet's plane has `front` on the eye's side and `back` on the other."""
+def _clear_of(solids: Solids, front: int, back: int, eye: Array) -> bool:
+    """Whether `back` cannot hide `front`: some facet's plane has `front` on the eye's side, `back` beyond."""
     for solid, other, sign in ((back, front, 1.0), (front, back, -1.0)):
         mine = solids.solid == solid
         point, normal = solids.point_m[mine], solids.normal[mine]

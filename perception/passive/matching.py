@@ -16,6 +16,7 @@ from perception.passive.background import Background
 from perception.passive.drawing import Artist, Drawing, Stands
 
 _SHADE_SIGMA = 0.6  # of a shade's brightness, over the ground's
+_SHADE_PX, _HARDLY = 4.0, 0.02  # pixels that a shade must fill to be judged by its own brightness
 _SHADOW, _SHADOW_SIGMA = 0.6, 0.3  # share of light missing in the shadow
 _DETAIL = 0.05  # first guess of what the drawing leaves out, over the ground's brightness
 _SHADOW_DETAIL = 0.3
@@ -42,10 +43,12 @@ class Scene:
 
 @dataclass(frozen=True, eq=False)
 class Detail:
-    """What the drawing leaves out, as standard deviations [counts]: of the rover's shades, of its shadow."""
+    """What the drawing leaves out, as standard deviations [counts]: of the rover's shades, of its shadow, and
+    of the ground's as long as the pose is off."""
 
     rover: float
     shadow: float
+    ground: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,14 +61,15 @@ class Match:
 
 def first_detail(scene: Scene) -> Detail:
     """What to allow for before anything is known."""
-    return Detail(_DETAIL * scene.brightness, _SHADOW_DETAIL * scene.brightness)
+    rover, shadow = _DETAIL * scene.brightness, _SHADOW_DETAIL * scene.brightness
+    return Detail(rover, shadow, rover)
 
 
 def weigh(scene: Scene, stands: Stands, detail: Detail) -> Array:
     """How far each pixel (h, w) may be off what is drawn [counts], with the rover at the first pose."""
     drawing = scene.artist.draw(stands)
     rover = drawing.shades[0].sum(axis=0)
-    variance = scene.noise**2 + drawing.ground[0] * scene.background.sigma**2
+    variance = scene.noise**2 + drawing.ground[0] * (scene.background.sigma**2 + detail.ground**2)
     variance = variance + rover * detail.rover**2 + _about_shadow(scene, drawing) * detail.shadow**2
     sigma: Array = np.sqrt(variance)
     return sigma
@@ -81,12 +85,20 @@ def match(scene: Scene, stands: Stands, sigma: Array) -> Match:
     n, k = columns.shape[:2]
     A, b = columns.reshape(n, k, -1), target.reshape(n, -1, 1)
     expected = np.append(np.full(k - 1, scene.brightness), _SHADOW)
-    weight = np.append(np.full(k - 1, _SHADE_SIGMA * scene.brightness), _SHADOW_SIGMA) ** -2.0
-    gram = (A @ A.transpose(0, 2, 1)).astype(np.float64) + np.diag(weight)
+    weight = _knowledge(scene, drawing)
+    gram = (A @ A.transpose(0, 2, 1)).astype(np.float64) + weight[:, None] * np.eye(k)
     right = (A @ b).astype(np.float64)[..., 0] + weight * expected
     level = np.linalg.solve(gram, right[..., None]).astype(np.float32)
     rest = (b - A.transpose(0, 2, 1) @ level)[..., 0]
     return Match(rest.reshape(n, *sigma.shape).astype(np.float64) * sigma, drawing)
+
+
+def _knowledge(scene: Scene, drawing: Drawing) -> Array:
+    """Weights (n, s + 1) of what is expected of shades and shadow; a shade that hardly shows has no say."""
+    shown = np.minimum(drawing.shades.sum(axis=(2, 3)) / _SHADE_PX + _HARDLY, 1.0)
+    sigma = np.pad(_SHADE_SIGMA * scene.brightness * shown, ((0, 0), (0, 1)), constant_values=_SHADOW_SIGMA)
+    weight: Array = np.asarray(sigma, dtype=np.float64) ** -2.0
+    return weight
 
 
 def refined_detail(scene: Scene, found: Match) -> Detail:

@@ -44,8 +44,8 @@ class Wrong(StrEnum):
     """What is not as the executive believes."""
 
     NOTHING = "nothing"
-    ELEVATION = "elevation"  # the surveyed height is 20 mm off
     BACKGROUND = "background"  # the empty view shows another place
+    ELEVATION = "elevation"  # the surveyed height is 20 mm off
 
 
 @dataclass(frozen=True)
