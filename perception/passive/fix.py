@@ -22,7 +22,7 @@ from perception.passive.binning import binned, binned_rig, binning_for
 from perception.passive.drawing import Artist, Stands
 from perception.passive.judging import Ground, PassiveFix, PassiveRefusal, judged
 from perception.passive.matching import Detail, Scene, first_detail, refined_detail, weigh
-from perception.passive.searching import search
+from perception.passive.searching import likeliest_sun, search
 from perception.passive.solids import rover_solids
 from perception.prediction import Expectation
 from perception.roi import predicted_windows
@@ -31,6 +31,7 @@ _LOOSE_M, _LOOSE_RAD = 1.0, math.radians(30.0)
 _MARGIN_M = 0.45  # around the markers: the rest of the rover, its shadow, and ground to know again
 _WIDEN = 0.25  # of the prediction's four sigmas: the margin does the rest
 _FINE_MARGIN_PX = 5
+_ANY_SUN_RAD = np.radians([(az, el) for az in range(-180, 180, 30) for el in (20.0, 35.0, 55.0)])
 _FIRST_STEPS, _FINALISTS, _MORE_STEPS = 1, 2, 3
 _ROUNDS, _MOST_STEPS = 2, 15  # each round weighs the pixels anew
 
@@ -60,14 +61,14 @@ def passive_fix(
     windows: tuple[Window, Window],
     expectation: Expectation,
     ground: Ground,
-    sun: Sun,
+    sun: Sun | None = None,
 ) -> PassiveFix | PassiveRefusal:
     """The pose that images (frames, h, w) of both cameras show against the empty views (frames, h, w).
 
-    All in counts and of the same `windows`, LEDs off, the head as the expectation's encoders say. ValueError
-    on other shapes or values.
+    All in counts and of the same `windows`, LEDs off, the head as the expectation's encoders say. Without
+    `sun` it is found from the shadow, which takes longer. ValueError on other shapes or values.
     """
-    start = _start(chain, expectation, ground, sun)
+    start = _start(chain, expectation, ground)
     by = binning_for(chain.rig, start.range_m)
     coarse = Chain.of(binned_rig(chain.rig, by))
     scenes = []
@@ -82,24 +83,31 @@ def passive_fix(
             return PassiveRefusal(f"{('left', 'right')[camera]} camera: {scene.background.problem}")
         scenes.append(scene)
     focal_px = coarse.rig.cameras[0].focal_px
-    best, close = _approached(scenes, start, focal_px)
+    suns_rad = _ANY_SUN_RAD if sun is None else np.array([[sun.azimuth_rad, sun.elevation_rad]])
+    best, close = _approached(scenes, start, focal_px, suns_rad)
     for _ in range(_ROUNDS):
         details = [refined_detail(s, m) for s, m in zip(close, best.matches, strict=True)]
-        sigmas = _sigmas(close, start, best.parameters, details)
-        best = align(close, start, best.parameters, sigmas, focal_px, _MOST_STEPS)
+        under = best.start
+        if sun is None:
+            under = replace(under, sun_rad=likeliest_sun(close, under, best.parameters))
+        sigmas = _sigmas(close, under, best.parameters, details)
+        best = align(close, under, best.parameters, sigmas, focal_px, _MOST_STEPS)
     return judged(coarse, best, close, details, ground)
 
 
-def _approached(scenes: Sequence[Scene], start: Start, focal_px: float) -> tuple[Aligned, list[Scene]]:
+def _approached(
+    scenes: Sequence[Scene], start: Start, focal_px: float, suns_rad: Array
+) -> tuple[Aligned, list[Scene]]:
     """The best of the starts, and the scenes cut to where it led: each round goes on with fewer of them."""
     near = []
-    for guess in search(scenes, start, focal_px):
-        close = [_cropped(s, start.stands(guess.parameters[None])) for s in scenes]
-        sigmas = _sigmas(close, start, guess.parameters, [first_detail(s) for s in close])
-        near.append((align(close, start, guess.parameters, sigmas, focal_px, _FIRST_STEPS), close, sigmas))
+    for guess in search(scenes, start, focal_px, suns_rad):
+        under = replace(start, sun_rad=guess.sun_rad)
+        close = [_cropped(s, under.stands(guess.parameters[None])) for s in scenes]
+        sigmas = _sigmas(close, under, guess.parameters, [first_detail(s) for s in close])
+        near.append((align(close, under, guess.parameters, sigmas, focal_px, _FIRST_STEPS), close, sigmas))
     near = sorted(near, key=lambda n: n[0].cost)[:_FINALISTS]
     further = [
-        (align(close, start, found.parameters, sigmas, focal_px, _MORE_STEPS), close)
+        (align(close, found.start, found.parameters, sigmas, focal_px, _MORE_STEPS), close)
         for found, close, sigmas in near
     ]
     return min(further, key=lambda f: f[0].cost)
@@ -129,7 +137,7 @@ def _scene(
     return Scene(image.mean(axis=0), noise, under, artist, chain.rig.cameras[0].focal_px / range_m)
 
 
-def _start(chain: Chain, expectation: Expectation, ground: Ground, sun: Sun) -> Start:
+def _start(chain: Chain, expectation: Expectation, ground: Ground) -> Start:
     body = expectation.state.site_body
     level = chain.rig.rover.inclinometer_sigma_rad
     eye = chain.site_ih(expectation.state.head_rad).position_m
@@ -137,7 +145,7 @@ def _start(chain: Chain, expectation: Expectation, ground: Ground, sun: Sun) -> 
     sigma = np.array([_LOOSE_M, _LOOSE_M, _LOOSE_M, level, level, _LOOSE_RAD])
     return Start(
         replace(body, position_m=position),
-        np.array([sun.azimuth_rad, sun.elevation_rad]),
+        _ANY_SUN_RAD[0],
         eye,
         np.zeros(SIZE),
         sigma,

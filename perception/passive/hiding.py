@@ -20,7 +20,7 @@ def near_first(solids: Solids, eye_body_m: Array) -> tuple[int, ...]:
     order: list[int] = []
     while waiting:
         clear = {s: sum(_clear_of(solids, s, o, eye_body_m) for o in waiting if o != s) for s in waiting}
-        order.append(max(waiting, key=lambda s: (clear[s], -away[s])))  # noqa: B023 - used at once
+        order.append(max(waiting, key=lambda s: (clear[s], -away[s])))
         waiting.remove(order[-1])
     return tuple(order)
 

