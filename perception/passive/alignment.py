@@ -71,13 +71,15 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Aligned:
-    """`parameters` (6,), their covariance (6, 6), the matches of both cameras, cost with priors."""
+    """`parameters` (6,), their covariance (6, 6), the matches of both cameras, cost with priors, and
+    `misfit`: squared sigmas a pixel, about 1 where everything is explained."""
 
     start: Start
     parameters: Array
     covariance: Array
     matches: tuple[Match, ...]
     cost: float
+    misfit: float
     converged: bool
 
     @property
@@ -118,7 +120,9 @@ def align(
             parameters, at = moved, shown(moved + probes)
         damping = damping / 10 if gained > 0.5 * ahead else min(damping * 10, 1e6)
     covariance = _covariance(at, sigmas, probes, start)
-    return Aligned(start, parameters, covariance, tuple(at), _cost(at, sigmas, start, parameters), converged)
+    cost = _cost(at, sigmas, start, parameters)
+    misfit = cost * _ALIKE / sum(sigma.size for sigma in sigmas)
+    return Aligned(start, parameters, covariance, tuple(at), cost, misfit, converged)
 
 
 def _cost(matches: Sequence[Match], sigmas: Sequence[Array], start: Start, parameters: Array) -> float:

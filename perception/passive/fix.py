@@ -32,7 +32,7 @@ _MARGIN_M = 0.45  # around the markers: the rest of the rover, its shadow, and g
 _WIDEN = 0.25  # of the prediction's four sigmas: the margin does the rest
 _FINE_MARGIN_PX = 5
 _ANY_SUN_RAD = np.radians([(az, el) for az in range(-180, 180, 30) for el in (20.0, 35.0, 55.0)])
-_FIRST_STEPS, _FINALISTS, _MORE_STEPS = 1, 2, 3
+_FIRST_STEPS, _FINALISTS, _MORE_STEPS = 2, 2, 3
 _ROUNDS, _MOST_STEPS = 2, 15  # each round weighs the pixels anew
 
 
