@@ -97,6 +97,29 @@ class RoverCalibration:
 
 
 @dataclass(frozen=True)
+class ShapeCalibration:
+    """The rover's solids as drawn: two belts (flat with round ends), chassis, arm and cabin as boxes.
+
+    Belts: `belt_shorter_m` less than the rover's length, as wide as the rover exceeds its gauge. The chassis
+    hangs between them with `chassis_gap_m` in all, its belly `belly_clearance_m` over the ground. The arm's
+    bar runs from its pivot to the cabin's; the cabin's top is the marker plane. Painted on the cabin: a plate
+    of `plate_m` (length, width) on its top, an opening of `opening_m` (width, height) in its front.
+    """
+
+    belt_radius_m: float = 0.033
+    belt_shorter_m: float = 0.020
+    belly_clearance_m: float = 0.020
+    chassis_length_m: float = 0.270
+    chassis_height_m: float = 0.044
+    chassis_gap_m: float = 0.005
+    cabin_size_m: Vec3 = (0.160, 0.120, 0.054)
+    arm_width_m: float = 0.080
+    arm_thickness_m: float = 0.010
+    plate_m: Vec2 = (0.090, 0.060)
+    opening_m: Vec2 = (0.050, 0.026)
+
+
+@dataclass(frozen=True)
 class MarkerCalibration:
     """The four LEDs in the plane z = 0 of frame `plc` (the paper's OCS) [m].
 
@@ -145,5 +168,6 @@ class RigCalibration:
     head: HeadCalibration = HeadCalibration()
     cabin: CabinCalibration = CabinCalibration()
     rover: RoverCalibration = RoverCalibration()
+    shape: ShapeCalibration = ShapeCalibration()
     markers: MarkerCalibration = MarkerCalibration()
     sensor: SensorCalibration = SensorCalibration()

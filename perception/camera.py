@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,15 +48,24 @@ class StereoModel:
 
     def project(self, points_ih_m: Array) -> Array:
         """Pixels (2, n, 2) of points (n, 3) in `ih`; NaN for points not in front of a camera."""
-        uv, _ = self.project_with_jacobian(points_ih_m)
+        normal, _ = self._normalised(as_array("points_ih_m", points_ih_m, (None, 3)))
+        bent = distort(normal, self.distortion[:, None, :])[0] if self.distortion.any() else normal
+        uv: Array = self.principal_px[:, None, :] + self.focal_px[:, None, None] * bent
         return uv
+
+    def camera(self, index: int) -> StereoModel:
+        """One camera (LEFT or RIGHT) alone: the same with a first axis of length 1."""
+        return StereoModel(*(getattr(self, f.name)[index : index + 1] for f in fields(self)))
+
+    def _normalised(self, points_ih_m: Array) -> tuple[Array, Array]:
+        """Coordinates (2, n, 2) at depth 1, and depths (2, n), NaN for points not in front of a camera."""
+        y_cam = (points_ih_m - self.position_ih_m[:, None]) @ self.rotation_cam_ih.transpose(0, 2, 1)
+        depth = np.where(y_cam[..., 2] > _MIN_DEPTH_M, y_cam[..., 2], np.nan)
+        return y_cam[..., :2] / depth[..., None], depth
 
     def project_with_jacobian(self, points_ih_m: Array) -> tuple[Array, Array]:
         """Pixels (2, n, 2) and their derivative by the point in `ih` (2, n, 2, 3)."""
-        points = as_array("points_ih_m", points_ih_m, (None, 3))
-        y_cam = np.einsum("cij,cnj->cni", self.rotation_cam_ih, points[None] - self.position_ih_m[:, None])
-        depth = np.where(y_cam[..., 2] > _MIN_DEPTH_M, y_cam[..., 2], np.nan)
-        normal = y_cam[..., :2] / depth[..., None]
+        normal, depth = self._normalised(as_array("points_ih_m", points_ih_m, (None, 3)))
         bent, bend = distort(normal, self.distortion[:, None, :])
         uv = self.principal_px[:, None, :] + self.focal_px[:, None, None] * bent
         perspective = np.zeros((*depth.shape, 2, 3))

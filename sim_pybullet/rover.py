@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 from executive.rig import RigCalibration
 from executive.types import Array, Quat, Vec3
 from sim_pybullet.bullet import pybullet
-from sim_pybullet.shape import ARM_THICKNESS_M, Belt, arm, belt, cabin, chassis
+from sim_pybullet.shape import Belt, arm, belt, cabin, chassis
 
 X, Y, YAW, Z, PITCH, ROLL = range(6)  # the joints from the site to the body, in this order
 BODY_LINK, LEFT_SHOE, RIGHT_SHOE, ARM_LINK, CABIN_LINK = ROLL, 6, 7, 8, 9
@@ -225,12 +225,12 @@ class _Link:
 
 
 def _links(client: int, rig: RigCalibration) -> tuple[_Link, ...]:
-    body, top, track = chassis(rig.rover), cabin(rig), belt(rig.rover)
+    body, top, track = chassis(rig), cabin(rig), belt(rig)
     body_kg = rig.rover.rover_mass_kg - 2 * TRACK_MASS_KG - ARM_MASS_KG - 5 * CARRIER_MASS_KG
     slide, turn, fixed = pybullet.JOINT_PRISMATIC, pybullet.JOINT_REVOLUTE, pybullet.JOINT_FIXED
     x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
     half_arm = (rig.cabin.arm_length_m / 2, 0.0, 0.0)
-    arm_shape = _box_shape(client, (2 * half_arm[0], arm(rig).size_m[1], ARM_THICKNESS_M), half_arm)
+    arm_shape = _box_shape(client, arm(rig).size_m, half_arm)
     shoe = _shoe_shape(client, track)
     sides = (rig.rover.track_gauge_m / 2, -rig.rover.track_gauge_m / 2)
     return (

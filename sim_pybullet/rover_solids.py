@@ -74,14 +74,14 @@ def _box_solid(box: Box, albedo: float, marks: dict[tuple[int, float], list[tupl
 def _cabin_marks(rig: RigCalibration, box: Box) -> dict[tuple[int, float], list[tuple[Array, float]]]:
     """A darker plate and the pads of the LEDs on the top, an instrument opening in the front."""
     top_m = box.centre_m[2] + box.size_m[2] / 2
-    plate = _rectangle(box.centre_m[0], box.centre_m[1], 0.090, 0.060, top_m)
+    plate = _rectangle(box.centre_m[0], box.centre_m[1], *rig.shape.plate_m, top_m)
     offset = np.array(rig.cabin.plc_offset_cabin_m)
     pads = [
         (_rectangle(x, y, _LED_PAD_M, _LED_PAD_M, top_m), _LED_PAD_ALBEDO)
         for x, y, _ in np.array(rig.markers.positions_plc_m) + offset
     ]
     front = box.centre_m[0] + box.size_m[0] / 2
-    opening = _rectangle(box.centre_m[1], box.centre_m[2], 0.050, 0.026, front)[:, [2, 0, 1]]
+    opening = _rectangle(box.centre_m[1], box.centre_m[2], *rig.shape.opening_m, front)[:, [2, 0, 1]]
     return {(2, 1.0): [(plate, 0.72), *pads], (0, 1.0): [(opening, 0.30)]}
 
 
@@ -92,7 +92,7 @@ def _rectangle(x: float, y: float, width: float, height: float, z: float) -> Arr
 
 def _belt_solid(rig: RigCalibration, box: Box) -> Solid:
     """A stadium of the belt's size whose rim is cut into grousers and gaps."""
-    size = belt(rig.rover)
+    size = belt(rig)
     rim = _stadium(size.flat_m, size.radius_m) + np.array([box.centre_m[0], box.centre_m[2]])
     half = size.width_m / 2
     faces = []

@@ -20,8 +20,10 @@ from sim_pybullet.sunlight import SKYLIGHT, Sun
 Image = NDArray[np.float32]
 
 _SHIFT = 6  # fractional bits of polygon corners
-_SHADOW_OVERSAMPLING = 2
-_TOUCHING_M = 0.002
+# OpenCV paints every sample that an outline touches, half a sample too many on each side. Samples a pixel, by
+# the size [px] up to which they are affordable: a rover far away must not look larger than it is.
+_SAMPLES = ((70.0, 16), (140.0, 8), (260.0, 4))
+_TOUCHING_M = 2e-4  # less than the millimetre between arm and cabin
 _LEAST_SINE = 0.03  # of the sun's height over the ground
 
 
@@ -45,7 +47,7 @@ class RoverRenderer:
         """Darken the ground where the rover keeps the sun off, in place."""
         shapes = [self._shadow(_vertices(solid, scene), scene) for solid in self._solids]
         hulls = [hull for hull in (_projected_hull(view, shape) for shape in shapes) if hull is not None]
-        canvas = _Canvas.around(hulls, window, _SHADOW_OVERSAMPLING)
+        canvas = _Canvas.around(hulls, window, _oversampling(hulls))
         if canvas is None:
             return
         for hull in hulls:
@@ -141,8 +143,11 @@ class _Canvas:
 
 
 def _oversampling(outlines: list[Array]) -> int:
-    """Four by four samples a pixel for a small rover, two by two for one that fills the window."""
-    return 4 if float(np.ptp(np.vstack(outlines), axis=0).max()) < 260 else 2
+    """Samples a pixel along each axis: more for a small rover, two for one that fills the window."""
+    if not outlines:
+        return 2
+    size_px = float(np.ptp(np.vstack(outlines), axis=0).max())
+    return next((samples for limit_px, samples in _SAMPLES if size_px < limit_px), 2)
 
 
 def _vertices(solid: Solid, scene: SceneState) -> Array:

@@ -7,17 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from executive.rig import RigCalibration, RoverCalibration
+from executive.rig import RigCalibration
 from executive.types import Vec3
 from sim_pybullet.scene import Box
 
-TRACK_RADIUS_M = 0.033
-TRACK_SHORTER_M = 0.020  # the belt's flat part ends before the housing does
-BELLY_CLEARANCE_M = 0.020
-CHASSIS_HEIGHT_M = 0.044
-CHASSIS_LENGTH_M = 0.270
-CABIN_SIZE_M: Vec3 = (0.160, 0.120, 0.054)
-ARM_THICKNESS_M = 0.010
 TETHER_ANCHOR_BODY_M: Vec3 = (-0.165, 0.0, 0.045)
 
 
@@ -35,33 +28,38 @@ class Belt:
         return self.length_m - 2 * self.radius_m
 
 
-def belt(rover: RoverCalibration) -> Belt:
+def belt(rig: RigCalibration) -> Belt:
     """The belt that fits the rover's length, width and gauge."""
-    return Belt(rover.length_m - TRACK_SHORTER_M, rover.width_m - rover.track_gauge_m, TRACK_RADIUS_M)
+    rover, shape = rig.rover, rig.shape
+    return Belt(
+        rover.length_m - shape.belt_shorter_m, rover.width_m - rover.track_gauge_m, shape.belt_radius_m
+    )
 
 
-def chassis(rover: RoverCalibration) -> Box:
+def chassis(rig: RigCalibration) -> Box:
     """The box between the tracks, with its belly clear of the ground."""
-    width_m = rover.track_gauge_m - belt(rover).width_m - 0.005
-    centre_m = (0.0, 0.0, BELLY_CLEARANCE_M + CHASSIS_HEIGHT_M / 2)
-    return Box("chassis", "body", centre_m, (CHASSIS_LENGTH_M, width_m, CHASSIS_HEIGHT_M))
+    shape = rig.shape
+    width_m = rig.rover.track_gauge_m - belt(rig).width_m - shape.chassis_gap_m
+    centre_m = (0.0, 0.0, shape.belly_clearance_m + shape.chassis_height_m / 2)
+    return Box("chassis", "body", centre_m, (shape.chassis_length_m, width_m, shape.chassis_height_m))
 
 
 def cabin(rig: RigCalibration) -> Box:
     """The payload cabin: its top is the marker plane."""
-    top = rig.cabin.plc_offset_cabin_m
-    return Box("cabin", "cabin", (top[0], top[1], top[2] - CABIN_SIZE_M[2] / 2), CABIN_SIZE_M)
+    top, size_m = rig.cabin.plc_offset_cabin_m, rig.shape.cabin_size_m
+    return Box("cabin", "cabin", (top[0], top[1], top[2] - size_m[2] / 2), size_m)
 
 
 def arm(rig: RigCalibration) -> Box:
     """The arm: a bar from its pivot to the cabin's."""
     length_m = rig.cabin.arm_length_m
-    return Box("arm", "arm", (length_m / 2, 0.0, 0.0), (length_m, 0.080, ARM_THICKNESS_M))
+    size_m = (length_m, rig.shape.arm_width_m, rig.shape.arm_thickness_m)
+    return Box("arm", "arm", (length_m / 2, 0.0, 0.0), size_m)
 
 
 def rover_boxes(rig: RigCalibration) -> tuple[Box, ...]:
     """Every visible box of the rover; the two tracks as cuboids around their stadium."""
-    b = belt(rig.rover)
+    b = belt(rig)
     tracks = (
         Box(
             name,
@@ -71,4 +69,4 @@ def rover_boxes(rig: RigCalibration) -> tuple[Box, ...]:
         )
         for name, side in (("left track", 1.0), ("right track", -1.0))
     )
-    return (*tracks, chassis(rig.rover), arm(rig), cabin(rig))
+    return (*tracks, chassis(rig), arm(rig), cabin(rig))

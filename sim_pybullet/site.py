@@ -83,12 +83,12 @@ def start_pose(
     ahead -= up * float(ahead @ up)
     ahead /= np.linalg.norm(ahead)
     rotation = np.column_stack([ahead, np.cross(up, ahead), up])
-    return (x, y, _resting_height(terrain, rotation, x, y, rig)), _quaternion(rotation)
+    return (x, y, resting_height(terrain, rotation, x, y, rig)), _quaternion(rotation)
 
 
-def _resting_height(terrain: Terrain, rotation: Array, x: float, y: float, rig: RigCalibration) -> float:
+def resting_height(terrain: Terrain, rotation: Array, x: float, y: float, rig: RigCalibration) -> float:
     """The lowest height of the body's origin at which no point of the belts' soles lies in the ground."""
-    b = belt(rig.rover)
+    b = belt(rig)
     along = np.linspace(-b.length_m / 2, b.length_m / 2, 24)
     across = (rig.rover.track_gauge_m + b.width_m * np.linspace(-1, 1, 4)) / 2
     soles = np.array([(a, s * c, 0.0) for a in along for c in across for s in (1.0, -1.0)]) @ rotation.T

@@ -83,7 +83,7 @@ class World:
             generator(seed, "inclinometer"),
             lambda: self.body.pose()[1],
         )
-        self._contact_m = belt(rig.rover).length_m
+        self._contact_m = belt(rig).length_m
         self._slips = (0.0, 0.0)
         self._grip = Grip(self.weight_n, self.weight_n)
         self._pull = np.zeros(3)

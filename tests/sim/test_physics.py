@@ -38,7 +38,7 @@ def slip_by_law(world: World, slope_rad: float, soil: str) -> float:
     load_n = DRAG_N * to_spool - np.array([0.0, 0.0, world.weight_n])
     wanted = -float(load_n @ uphill) / (-SOILS[soil].friction * float(load_n @ normal))
     grid = np.linspace(1e-4, 1.0, 20_000)
-    length_m = belt(world.rig.rover).length_m
+    length_m = belt(world.rig).length_m
     misfit = [abs(thrust_ratio(s, length_m, SOILS[soil].shear_m) - wanted) for s in grid]
     return float(grid[np.argmin(misfit)])
 

@@ -1,0 +1,162 @@
+"""A fix without any light of the rover's own: outline, shades and shadow against the empty ground.
+
+The height of the surveyed ground is not put into the pose, it is held against it: stereo sees the range by
+itself, and a survey that is wrong by some millimetres would pull a distant rover by decimetres.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.types import Array, Window
+from perception.chain import Chain
+from perception.checks import as_finite
+from perception.passive.alignment import SIZE, Aligned, Start, align
+from perception.passive.background import lay_under
+from perception.passive.binning import binned, binned_rig, binning_for
+from perception.passive.drawing import Artist, Stands
+from perception.passive.judging import Ground, PassiveFix, PassiveRefusal, judged
+from perception.passive.matching import Detail, Scene, first_detail, refined_detail, weigh
+from perception.passive.searching import likeliest_sun, search
+from perception.passive.solids import rover_solids
+from perception.prediction import Expectation
+from perception.roi import predicted_windows
+
+_LOOSE_M, _LOOSE_RAD = 1.0, math.radians(30.0)
+_MARGIN_M = 0.45  # around the markers: the rest of the rover, its shadow, and ground to know again
+_WIDEN = 0.25  # of the prediction's four sigmas: the margin does the rest
+_FINE_MARGIN_PX = 5
+_ANY_SUN_RAD = np.radians([(az, el) for az in range(-180, 180, 30) for el in (20.0, 35.0, 55.0)])
+_FIRST_STEPS, _FINALISTS, _MORE_STEPS = 2, 2, 3
+_ROUNDS, _MOST_STEPS = 2, 15  # each round weighs the pixels anew
+
+
+@dataclass(frozen=True)
+class Sun:
+    """Where the sun stands, to a degree or so: azimuth from site x, left positive, and elevation [rad]."""
+
+    azimuth_rad: float
+    elevation_rad: float
+
+
+def empty_window(chain: Chain, expectation: Expectation) -> tuple[Window, Window]:
+    """Windows that hold the expected rover, its shadow and ground around it; ValueError if out of sight."""
+    range_m = float(np.linalg.norm(expectation.state.site_body.position_m))
+    margin_px = _MARGIN_M * chain.rig.cameras[0].focal_px / max(range_m, 1.0)
+    windows = predicted_windows(chain, expectation.state, expectation.covariance, margin_px, _WIDEN)
+    if windows is None:
+        raise ValueError("got a rover expected out of the cameras' sight, expected one in both frames")
+    return windows
+
+
+def passive_fix(
+    chain: Chain,
+    images: Sequence[NDArray[np.uint16]],
+    backgrounds: Sequence[NDArray[np.uint16]],
+    windows: tuple[Window, Window],
+    expectation: Expectation,
+    ground: Ground,
+    sun: Sun | None = None,
+) -> PassiveFix | PassiveRefusal:
+    """The pose that images (frames, h, w) of both cameras show against the empty views (frames, h, w).
+
+    All in counts and of the same `windows`, LEDs off, the head as the expectation's encoders say. Without
+    `sun` it is found from the shadow, which takes longer. ValueError on other shapes or values.
+    """
+    start = _start(chain, expectation, ground)
+    by = binning_for(chain.rig, start.range_m)
+    coarse = Chain.of(binned_rig(chain.rig, by))
+    scenes = []
+    for camera in (0, 1):
+        taken = [
+            _checked(f"{name}[{camera}]", frames[camera], windows[camera])
+            for name, frames in (("images", images), ("backgrounds", backgrounds))
+        ]
+        (image, window), (empty, _) = (binned(frames, windows[camera], by) for frames in taken)
+        scene = _scene(coarse, expectation, camera, window, image, empty)
+        if scene.background.problem:
+            return PassiveRefusal(f"{('left', 'right')[camera]} camera: {scene.background.problem}")
+        scenes.append(scene)
+    focal_px = coarse.rig.cameras[0].focal_px
+    suns_rad = _ANY_SUN_RAD if sun is None else np.array([[sun.azimuth_rad, sun.elevation_rad]])
+    best, close = _approached(scenes, start, focal_px, suns_rad)
+    for _ in range(_ROUNDS):
+        details = [refined_detail(s, m) for s, m in zip(close, best.matches, strict=True)]
+        under = best.start
+        if sun is None:
+            under = replace(under, sun_rad=likeliest_sun(close, under, best.parameters))
+        sigmas = _sigmas(close, under, best.parameters, details)
+        best = align(close, under, best.parameters, sigmas, focal_px, _MOST_STEPS)
+    return judged(coarse, best, close, details, ground)
+
+
+def _approached(
+    scenes: Sequence[Scene], start: Start, focal_px: float, suns_rad: Array
+) -> tuple[Aligned, list[Scene]]:
+    """The best of the starts, and the scenes cut to where it led: each round goes on with fewer of them."""
+    near = []
+    for guess in search(scenes, start, focal_px, suns_rad):
+        under = replace(start, sun_rad=guess.sun_rad)
+        close = [_cropped(s, under.stands(guess.parameters[None])) for s in scenes]
+        sigmas = _sigmas(close, under, guess.parameters, [first_detail(s) for s in close])
+        near.append((align(close, under, guess.parameters, sigmas, focal_px, _FIRST_STEPS), close, sigmas))
+    near = sorted(near, key=lambda n: n[0].cost)[:_FINALISTS]
+    further = [
+        (align(close, found.start, found.parameters, sigmas, focal_px, _MORE_STEPS), close)
+        for found, close, sigmas in near
+    ]
+    return min(further, key=lambda f: f[0].cost)
+
+
+def _sigmas(
+    scenes: Sequence[Scene], start: Start, parameters: Array, details: Sequence[Detail]
+) -> list[Array]:
+    stands = start.stands(parameters[None])
+    return [weigh(s, stands, d) for s, d in zip(scenes, details, strict=True)]
+
+
+def _checked(name: str, frames: NDArray[np.uint16], window: Window) -> NDArray[np.uint16]:
+    as_finite(name, frames, (None, window.height, window.width))
+    return np.asarray(frames)
+
+
+def _scene(
+    chain: Chain, expectation: Expectation, camera: int, window: Window, image: Array, empty: Array
+) -> Scene:
+    """One camera's frames (n, h, w) as a mean over its background."""
+    state = expectation.state
+    noise = chain.rig.sensor.noise_counts / math.sqrt(len(image))
+    under = lay_under(image.mean(axis=0), empty.mean(axis=0), noise)
+    artist = Artist(chain, rover_solids(chain.rig, state.joints_rad), state.head_rad, camera, window)
+    range_m = float(np.linalg.norm(state.site_body.position_m))
+    return Scene(image.mean(axis=0), noise, under, artist, chain.rig.cameras[0].focal_px / range_m)
+
+
+def _start(chain: Chain, expectation: Expectation, ground: Ground) -> Start:
+    body = expectation.state.site_body
+    level = chain.rig.rover.inclinometer_sigma_rad
+    eye = chain.site_ih(expectation.state.head_rad).position_m
+    position = np.array([*body.position_m[:2], ground.height_m])
+    sigma = np.array([_LOOSE_M, _LOOSE_M, _LOOSE_M, level, level, _LOOSE_RAD])
+    return Start(
+        replace(body, position_m=position),
+        _ANY_SUN_RAD[0],
+        eye,
+        np.zeros(SIZE),
+        sigma,
+    )
+
+
+def _cropped(scene: Scene, stands: Stands) -> Scene:
+    """The scene cut to the rover and its shadow at this pose."""
+    artist = scene.artist.framing(stands, _FINE_MARGIN_PX)
+    top, left = artist.window.v - scene.artist.window.v, artist.window.u - scene.artist.window.u
+    part = np.s_[top : top + artist.window.height, left : left + artist.window.width]
+    whole = scene.background
+    under = replace(whole, counts=whole.counts[part], sigma=whole.sigma[part])
+    return replace(scene, image=scene.image[part], background=under, artist=artist)
