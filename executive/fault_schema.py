@@ -20,7 +20,7 @@ def faults(defs: Schema) -> Schema:
     defs["profile"] = {"anyOf": [{"const": STEP}, _inlined(Profile.model_json_schema(), defs)]}
     defs["distribution"] = _distribution()
     specs = [_spec(name) for name in sorted(plugins.found(plugins.FAULTS))]
-    defs["fault"] = {"oneOf": [_fault(spec) for spec in specs]}
+    defs["fault"] = {"oneOf": [_fault(spec, defs) for spec in specs]}
     defs["group"] = _group()
     return {"type": "array", "items": {"anyOf": [_ref("fault"), _ref("group")]}}
 
@@ -31,9 +31,9 @@ def _spec(name: str) -> FaultSpec:
     return spec
 
 
-def _fault(spec: FaultSpec) -> Schema:
+def _fault(spec: FaultSpec, defs: Schema) -> Schema:
     """One fault of this kind: its parameters beside what every fault may have."""
-    given = spec.model.model_json_schema(by_alias=True)
+    given = _inlined(spec.model.model_json_schema(by_alias=True), defs)
     fields = {name: {"anyOf": [f, _ref("distribution")]} for name, f in properties(spec.model).items()}
     needed = given.get("required", [])
     parameters = _closed(fields, needed) | {"description": spec.doc}

@@ -34,6 +34,12 @@ class Bench:
             self.backend.advance()
         self.mind.sense(self.backend.devices)
 
+    def pull(self, tension_n: float) -> None:
+        """Let the tether be felt like this."""
+        tether = self.backend.devices.tether.read()
+        telemetry = self.mind.sense(self.backend.devices)
+        self.mind.telemetry = replace(telemetry, tether=replace(tether, tension_n=tension_n))
+
     def fix(self, markers: int = 4) -> PoseEstimate:
         robot = self.backend.robot
         seen = pose(robot.x_m, robot.y_m, robot.heading_rad)
@@ -107,7 +113,13 @@ def test_a_missing_marker_is_noticed(bench: Bench) -> None:
     ],
 )
 def test_a_failure_speaks_for_its_hypothesis(bench: Bench, reason: Reason, hypothesis: Hypothesis) -> None:
+    if reason is Reason.TETHER:
+        bench.pull(5.0)
     assert bench.mind.failed(Outcome(reason)).anomaly[0] is hypothesis
+
+
+def test_a_pull_that_nobody_feels_is_no_snag(bench: Bench) -> None:
+    assert bench.mind.failed(Outcome(Reason.TETHER)).anomaly[0] is not Hypothesis.TETHER_SNAG
 
 
 def test_what_is_not_explained_teaches_nothing(bench: Bench) -> None:
