@@ -31,11 +31,12 @@ def draw(tables: dict[str, list[Row]], path: Path) -> None:
         for table, lines in tables.items():
             style, colour, label = _MARKS[table]
             error = [scale * getattr(row, f"{name}_{suffix}") for row in lines]
-            axis.loglog(ranges, error, style, color=colour, label=f"RMS error, {label}")
+            there = [row.range_m for row in lines]
+            axis.loglog(there, error, style, color=colour, label=f"RMS error, {label}")
         axis.set_xticks(ranges, [f"{r:g}" for r in ranges])
         axis.minorticks_off()
         axis.set(xlabel="range [m]", ylabel=f"{name} [{unit}]", title=name.capitalize())
-        axis.margins(x=0.08)
+        axis.margins(x=0.1, y=0.1)
         axis.grid(alpha=0.3)
         axis.legend()
     path.parent.mkdir(parents=True, exist_ok=True)
