@@ -16,24 +16,21 @@ from numpy.typing import NDArray
 from executive.types import Array, Window
 from perception.chain import Chain
 from perception.checks import as_finite
-from perception.passive.alignment import SIZE, Aligned, Start, align
+from perception.passive.alignment import SIZE, Start
 from perception.passive.background import lay_under
 from perception.passive.binning import binned, binned_rig, binning_for
-from perception.passive.drawing import Artist, Stands
+from perception.passive.drawing import Artist
 from perception.passive.judging import Ground, PassiveFix, PassiveRefusal, judged
-from perception.passive.matching import Detail, Scene, first_detail, refined_detail, weigh
-from perception.passive.searching import likeliest_sun, search
+from perception.passive.matching import Scene
 from perception.passive.solids import rover_solids
+from perception.passive.ways import RIVAL, approached, chosen, followed
 from perception.prediction import Expectation
 from perception.roi import predicted_windows
 
 _LOOSE_M, _LOOSE_RAD = 1.0, math.radians(30.0)
 _MARGIN_M = 0.45  # around the markers: the rest of the rover, its shadow, and ground to know again
 _WIDEN = 0.25  # of the prediction's four sigmas: the margin does the rest
-_FINE_MARGIN_PX = 5
 _ANY_SUN_RAD = np.radians([(az, el) for az in range(-180, 180, 30) for el in (20.0, 35.0, 55.0)])
-_FIRST_STEPS, _FINALISTS, _MORE_STEPS = 2, 2, 3
-_ROUNDS, _MOST_STEPS = 2, 15  # each round weighs the pixels anew
 
 
 @dataclass(frozen=True)
@@ -84,40 +81,11 @@ def passive_fix(
         scenes.append(scene)
     focal_px = coarse.rig.cameras[0].focal_px
     suns_rad = _ANY_SUN_RAD if sun is None else np.array([[sun.azimuth_rad, sun.elevation_rad]])
-    best, close = _approached(scenes, start, focal_px, suns_rad)
-    for _ in range(_ROUNDS):
-        details = [refined_detail(s, m) for s, m in zip(close, best.matches, strict=True)]
-        under = best.start
-        if sun is None:
-            under = replace(under, sun_rad=likeliest_sun(close, under, best.parameters))
-        sigmas = _sigmas(close, under, best.parameters, details)
-        best = align(close, under, best.parameters, sigmas, focal_px, _MOST_STEPS)
-    return judged(coarse, best, close, details, ground)
-
-
-def _approached(
-    scenes: Sequence[Scene], start: Start, focal_px: float, suns_rad: Array
-) -> tuple[Aligned, list[Scene]]:
-    """The best of the starts, and the scenes cut to where it led: each round goes on with fewer of them."""
-    near = []
-    for guess in search(scenes, start, focal_px, suns_rad):
-        under = replace(start, sun_rad=guess.sun_rad)
-        close = [_cropped(s, under.stands(guess.parameters[None])) for s in scenes]
-        sigmas = _sigmas(close, under, guess.parameters, [first_detail(s) for s in close])
-        near.append((align(close, under, guess.parameters, sigmas, focal_px, _FIRST_STEPS), close, sigmas))
-    near = sorted(near, key=lambda n: n[0].cost)[:_FINALISTS]
-    further = [
-        (align(close, found.start, found.parameters, sigmas, focal_px, _MORE_STEPS), close)
-        for found, close, sigmas in near
-    ]
-    return min(further, key=lambda f: f[0].cost)
-
-
-def _sigmas(
-    scenes: Sequence[Scene], start: Start, parameters: Array, details: Sequence[Detail]
-) -> list[Array]:
-    stands = start.stands(parameters[None])
-    return [weigh(s, stands, d) for s, d in zip(scenes, details, strict=True)]
+    ways = [followed(way, focal_px, sun is None) for way in approached(scenes, start, focal_px, suns_rad)]
+    best, lead = chosen(ways, focal_px)
+    if lead < RIVAL:
+        return PassiveRefusal(f"two poses explain the images, {lead:.1f} apart in log likelihood")
+    return judged(coarse, best.aligned, best.scenes, best.details, ground)
 
 
 def _checked(name: str, frames: NDArray[np.uint16], window: Window) -> NDArray[np.uint16]:
@@ -150,13 +118,3 @@ def _start(chain: Chain, expectation: Expectation, ground: Ground) -> Start:
         np.zeros(SIZE),
         sigma,
     )
-
-
-def _cropped(scene: Scene, stands: Stands) -> Scene:
-    """The scene cut to the rover and its shadow at this pose."""
-    artist = scene.artist.framing(stands, _FINE_MARGIN_PX)
-    top, left = artist.window.v - scene.artist.window.v, artist.window.u - scene.artist.window.u
-    part = np.s_[top : top + artist.window.height, left : left + artist.window.width]
-    whole = scene.background
-    under = replace(whole, counts=whole.counts[part], sigma=whole.sigma[part])
-    return replace(scene, image=scene.image[part], background=under, artist=artist)

@@ -19,8 +19,8 @@ from perception.rotation import skew
 _GATE = 0.999
 _LEAST_EXPLAINED = 0.5  # of what changed against the background
 _MOST_MISFIT = 2.0  # squared sigmas a pixel; 1.6 in 99 of 100 fixes, 4 and more with a wrong heading
-_MOST_DETAIL = 0.3  # that the drawing may leave out, over the ground's brightness
-_FLOOR_PX = 0.05  # what background, drawing and lens calibration leave
+_MOST_DETAIL = 0.1  # that the drawing may leave out, over the ground's brightness
+_FLOOR_PX = 0.07  # what background, drawing and lens calibration leave
 _ARM_M = 0.15  # from the rover's middle to its ends, at which yaw is seen
 
 
