@@ -14,6 +14,7 @@ import numpy as np
 
 from executive.types import Array, Centres, Images, Vec2
 from perception.chain import Chain
+from perception.head import axes_site
 from perception.registration import Matches, matched
 from perception.rotation import exp_map, rot_z, skew
 
@@ -50,9 +51,9 @@ class Alignment:
         E[:, 6] = arm * range_m / base_m  # what turns one camera against the other moves along the sight
         return E @ self.mean, E @ self.covariance @ E.T
 
-    def told(self, pan_rad: float) -> str:
-        """In words, for a head that looks to `pan_rad`: about which axis it is off, and how much."""
-        pan, tilt, roll = np.degrees(_axes(pan_rad) @ self.mean[:3])
+    def told(self, bearing_rad: float) -> str:
+        """In words, for a head that looks in this direction: about which axis it is off, and how much."""
+        roll, tilt, pan = np.degrees(rot_z(bearing_rad).T @ self.mean[:3])
         shift_mm = 1e3 * float(np.linalg.norm(self.mean[3:6]))
         apart_deg = math.degrees(math.hypot(*self.mean[6:]))
         return (
@@ -135,12 +136,6 @@ def _fitted(chain: Chain, sights: list[_Sights], head_rad: Vec2) -> Alignment | 
 def _pointing_covariance(chain: Chain, head_rad: Vec2) -> Array:
     """Of the rotation between two moves to the same angles, each missed by the head as it does [rad2]."""
     pan_sigma, tilt_sigma = chain.encoder_sigma_rad()[:2]
-    pan_axis, tilt_axis, _ = _axes(head_rad[0])
+    pan_axis, tilt_axis = axes_site(chain.rig.head, head_rad)
     once = pan_sigma**2 * np.outer(pan_axis, pan_axis) + tilt_sigma**2 * np.outer(tilt_axis, tilt_axis)
     return np.asarray(2 * once)
-
-
-def _axes(pan_rad: float) -> Array:
-    """Axes of pan, tilt and roll as rows, in `site`, of a level head that looks to `pan_rad`."""
-    turn = rot_z(pan_rad)
-    return np.stack([turn[:, 2], turn[:, 1], turn[:, 0]])

@@ -28,6 +28,12 @@ def head_rates(head: HeadCalibration, head_rad: Vec2) -> tuple[Array, Array]:
     return by_pan, by_tilt
 
 
+def axes_site(head: HeadCalibration, head_rad: Vec2) -> tuple[Array, Array]:
+    """The axes (3,) in site about which the head turns in pan and in tilt at these encoder readings."""
+    before, between = _fixed(head)
+    return before[:, 2], (before @ rot_z(head_rad[0] + head.pan_zero_rad) @ between)[:, 1]
+
+
 @lru_cache(maxsize=64)
 def _fixed(head: HeadCalibration) -> tuple[Array, Array]:
     """What stands before the pan axis and between the two axes."""

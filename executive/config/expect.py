@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -48,32 +48,36 @@ class Diagnosed(Noticed):
     as_: Annotated[Name, Field(alias="as")]
 
 
-class Band(Strict):
-    """At least one bound, both exclusive."""
+class Bounded(Strict):
+    """Something with two fields that bound it, of which at least one must be said."""
+
+    BOUNDS: ClassVar[tuple[str, str]] = ("above", "below")
 
     @model_validator(mode="after")
     def bounded(self) -> Self:
-        if not self.model_fields_set & {"above", "below"}:
-            text = "got no bound, expected above, below or both"
-            raise PydanticCustomError("located", "{text}", {"text": text})
+        if not self.model_fields_set & set(self.BOUNDS):
+            raise _wrong(f"got no bound, expected {', '.join(self.BOUNDS)} or both")
         return self
 
 
-class LengthBand(Band):
+class LengthBand(Bounded):
     above: Length | None = None
     below: Length | None = None
 
 
-class DurationBand(Band):
+class DurationBand(Bounded):
     above: Duration | None = None
     below: Duration | None = None
 
 
 def _known_end(word: str) -> str:
     if word not in ENDS:
-        text = f"got {word}, expected {listed(ENDS)}{guess(word, ENDS)}"
-        raise PydanticCustomError("located", "{text}", {"text": text})
+        raise _wrong(f'got "{word}", expected {listed(ENDS)}{guess(word, ENDS)}')
     return word
+
+
+def _wrong(text: str) -> PydanticCustomError:
+    return PydanticCustomError("located", "{text}", {"text": text})
 
 
 Ends = Annotated[str, AfterValidator(_known_end), Field(json_schema_extra={"enum": list(ENDS)})]
@@ -81,8 +85,10 @@ Step = Annotated[dict[Name, Ends], Field(min_length=1, max_length=1)]
 """A node, by its name or path, and how it ends: {localise: not_seen}."""
 
 
-class Times(Strict):
+class Times(Bounded):
     """How often a node may end in one way."""
+
+    BOUNDS = ("at_least", "at_most")
 
     of: Step
     at_least: Annotated[int, Field(ge=0)] = 0

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import NamedTuple
 
+from executive.addresses import CONTROL
 from executive.report.gather import Run
 from executive.telemetry.events import NodeChange
 
-_PLAIN = frozenset(
-    {"sequence", "selector", "parallel", "loop", "recover", "retry", "repeat", "for_each"}
-    | {"inverter", "timeout", "force_success", "force_failure"}
-)
+_SILENT = CONTROL - {"for_each"}
+"""Steps of a path that tell nothing; what is done for each of several tells itself from what is done once."""
 
 
 class Span(NamedTuple):
@@ -92,5 +91,5 @@ def short_names(paths: list[str]) -> dict[str, str]:
 
 
 def _telling(parts: list[str]) -> list[str]:
-    kept = [part for part in parts[:-1] if part.split("#")[0] not in _PLAIN]
+    kept = [part for part in parts[:-1] if part.split("#")[0] not in _SILENT]
     return [*kept, parts[-1]]

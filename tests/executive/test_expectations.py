@@ -228,6 +228,13 @@ def test_mission_time_and_path_lie_between_their_bounds(story):
     assert rows[0]["robustness"] == pytest.approx(10.0)
 
 
-def test_a_band_without_a_bound_is_refused():
+def test_what_has_no_bound_is_refused_since_it_would_always_hold():
     with pytest.raises(ValueError, match="got no bound, expected above, below or both"):
         Expect.model_validate({"path": {}})
+    with pytest.raises(ValueError, match="got no bound, expected at_least, at_most or both"):
+        Expect.model_validate({"times": [{"of": {"localise": "success"}}]}, strict=False)
+
+
+def test_an_end_that_no_node_has_is_refused_with_a_guess():
+    with pytest.raises(ValueError, match=r'got "succes", expected success.*did you mean "success"'):
+        Expect.model_validate({"never": [{"localise": "succes"}]}, strict=False)

@@ -190,6 +190,8 @@ def test_leaves_are_shown_as_the_stretches_they_ran(tmp_path):
 def test_leaves_of_one_name_are_told_apart_by_their_parents():
     names = short_names(["r/a/wait", "r/b/wait", "r/b/trek"])
     assert list(names.values()) == ["a/wait", "b/wait", "trek"]
+    names = short_names(["r/selector/mission/look", "r/selector/mission/for_each/sequence/look"])
+    assert list(names.values()) == ["mission/look", "for_each/look"]
 
 
 def test_ellipse_lies_at_its_mahalanobis_distance():

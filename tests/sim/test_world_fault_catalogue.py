@@ -14,176 +14,14 @@ import pytest
 
 import sim_pybullet.faults as catalogue
 from executive.faults import FaultSpec
-from executive.types import Centres, Reason
+from executive.types import Reason
+from tests.sim import fault_measures as measure
 from tests.sim.bench import SPEED_M_S, Bench
+from tests.sim.fault_measures import DEG
 
 pytestmark = pytest.mark.sim
 
 SPECS: dict[str, FaultSpec] = {s.name: s for s in (getattr(catalogue, n) for n in catalogue.__all__)}
-DEG = math.radians(1.0)
-
-
-def advance_of_a_drive(bench: Bench) -> float:
-    """Metres ahead for 50 mm of belt."""
-    before = bench.position
-    bench.drive(0.05, 0.05, 60)
-    return float(np.linalg.norm(bench.position - before))
-
-
-def slide_of_a_drive(bench: Bench) -> float:
-    """Metres to the left for 50 mm of belt."""
-    before, heading = bench.position, bench.heading
-    bench.drive(0.05, 0.05)
-    dx, dy, _ = bench.position - before
-    return float(-math.sin(heading) * dx + math.cos(heading) * dy)
-
-
-def turn_of_a_turn(bench: Bench) -> float:
-    """Radians for 30 mm of belt each way; turned back after."""
-    before = bench.heading
-    bench.drive(-0.03, 0.03)
-    turned = bench.heading - before
-    bench.drive(0.03, -0.03)
-    return turned
-
-
-def counts_of_a_drive(bench: Bench) -> float:
-    """What the left encoder has counted 20 s into a drive [m]."""
-    before = bench.devices.tracks.read().left_m
-    bench.drive(0.05, 0.05, 20)
-    return bench.devices.tracks.read().left_m - before
-
-
-def run_on(bench: Bench) -> float:
-    """What the left encoder counts in the 30 s after a drive [m]."""
-    bench.drive(0.02, 0.02)
-    before = bench.devices.tracks.read().left_m
-    bench.advance(30)
-    return bench.devices.tracks.read().left_m - before
-
-
-def blocked(bench: Bench) -> float:
-    """1 for a drive that ends BLOCKED."""
-    outcome = bench.drive(0.04, 0.04)
-    return float(outcome is not None and outcome.reason is Reason.BLOCKED)
-
-
-def arm_swing(bench: Bench) -> float:
-    """How far the arm comes of 15 degrees [rad]."""
-    bench.finish(bench.devices.cabin.move(15 * DEG, 0.0))
-    swung = bench.devices.cabin.read().arm_rad
-    bench.finish(bench.devices.cabin.move(0.0, 0.0))
-    return swung
-
-
-def cabin_swing(bench: Bench) -> float:
-    """How far the cabin comes of 15 degrees [rad]."""
-    bench.finish(bench.devices.cabin.move(0.0, 15 * DEG))
-    swung = bench.devices.cabin.read().cabin_rad
-    bench.finish(bench.devices.cabin.move(0.0, 0.0))
-    return swung
-
-
-def pull_of_a_drive(bench: Bench) -> float:
-    """The tether's pull after 60 mm away from the spool [N]."""
-    bench.drive(0.06, 0.06)
-    return bench.world.tether.tension_n
-
-
-def tether_out(bench: Bench) -> float:
-    """Tether out beyond what the way takes, after 20 mm [m]."""
-    bench.drive(0.02, 0.02)
-    return bench.devices.tether.read().length_m - bench.world.tether.way_m(bench.world.anchor())
-
-
-def load_on_tracks(bench: Bench) -> float:
-    """Share of the weight that the tracks bear, a minute on."""
-    bench.advance(60)
-    return sum(bench.world.body.loads()) / bench.world.weight_n
-
-
-def height_of_a_drive(bench: Bench) -> float:
-    """How much higher the rover stands after 50 mm [m]."""
-    bench.advance(5)
-    before = bench.position[2]
-    bench.drive(0.05, 0.05)
-    return float(bench.position[2] - before)
-
-
-def pan_of_a_move(bench: Bench) -> float:
-    """How far the pan encoder comes of 10 degrees, and the tilt encoder of 5 [rad]; pointed back after."""
-    before = bench.devices.head.read()
-    bench.point(10 * DEG, 5 * DEG)
-    after = bench.devices.head.read()
-    bench.point()
-    return after.pan_rad - before.pan_rad
-
-
-def tilt_of_a_move(bench: Bench) -> float:
-    before = bench.devices.head.read()
-    bench.point(10 * DEG, 5 * DEG)
-    after = bench.devices.head.read()
-    bench.point()
-    return after.tilt_rad - before.tilt_rad
-
-
-def ticks_of_a_move(bench: Bench) -> float:
-    began = bench.backend.clock.ticks
-    bench.point(10 * DEG)
-    took = bench.backend.clock.ticks - began
-    bench.point()
-    return float(took)
-
-
-def column(bench: Bench) -> float:
-    """The column of the markers' middle in the left image [px]."""
-    return float(np.mean(bench.centres()[0, :, 0]))
-
-
-def row(bench: Bench) -> float:
-    """The row of the markers' middle in the left image [px]."""
-    return float(np.mean(bench.centres()[0, :, 1]))
-
-
-def column_after_moves(bench: Bench) -> float:
-    """The same after three moves there and back."""
-    for _ in range(3):
-        bench.point(8 * DEG)
-        bench.point()
-    return column(bench)
-
-
-def column_by_side(bench: Bench) -> float:
-    """How the column differs with the side from which the head has come [px]."""
-    bench.point(3 * DEG)
-    bench.point()
-    from_the_left = column(bench)
-    bench.point(-3 * DEG)
-    bench.point()
-    return column(bench) - from_the_left
-
-
-def place_of_marker_0(bench: Bench) -> float:
-    """The column of marker 0 in the left image [px]."""
-    return float(bench.centres()[0, 0, 0])
-
-
-def markers_found(bench: Bench) -> float:
-    return float(bench.found())
-
-
-def sharpness(bench: Bench) -> float:
-    """Logarithm of found markers' reported error, or of the contrast of neighbouring pixels of an image."""
-    value = bench.shot()
-    if isinstance(value, Centres):
-        return float(np.log(np.nanmean(value.sigma_px)))
-    return float(np.log(np.abs(np.diff(value.counts[0][0].astype(float), axis=1)).mean()))
-
-
-def light(bench: Bench) -> float:
-    """Logarithm of images' mean counts, or of centres' reported error, which grows with the daylight."""
-    value = bench.shot()
-    return float(np.log(np.nanmean(value.sigma_px if isinstance(value, Centres) else value.counts[0])))
 
 
 @dataclass(frozen=True)
@@ -206,42 +44,42 @@ LEFT = {"side": "left"}
 RISE = {"ahead": "350 mm", "height": "60 mm"}
 HERE = {"ahead": "0 m", "radius": "1 m"}
 CASES: dict[str, Case] = {
-    "motor_dead": Case(counts_of_a_drive, 0.02, LEFT),
-    "track_weak": Case(counts_of_a_drive, 0.01, LEFT | {"factor": "50 %"}),
-    "motor_runaway": Case(run_on, 0.015, LEFT),
-    "motor_reversed": Case(counts_of_a_drive, 0.05, LEFT),
-    "track_jam": Case(blocked, 1.0, LEFT),
-    "arm_locked": Case(arm_swing, 14 * DEG, noise=0.5 * DEG),
-    "cabin_locked": Case(cabin_swing, 14 * DEG, noise=0.5 * DEG),
-    "slip_burst": Case(advance_of_a_drive, 0.015, noise=0.003),
-    "side_slope_drift": Case(slide_of_a_drive, 0.006, noise=0.002),
-    "low_friction_patch": Case(turn_of_a_turn, 5 * DEG, HERE, noise=2 * DEG),
-    "sand_trap": Case(advance_of_a_drive, 0.045, HERE | {"slip": "100 %"}, noise=0.003),
-    "cabin_grounding": Case(load_on_tracks, 0.15, noise=0.1),
-    "wrong_elevation_model": Case(height_of_a_drive, 0.004, RISE, noise=0.002),
-    "tether_snag": Case(pull_of_a_drive, 1.0, noise=0.2),
-    "tether_capstan": Case(pull_of_a_drive, 1.0, noise=0.2),
-    "spool_jam": Case(pull_of_a_drive, 1.0, noise=0.2),
-    "tether_short": Case(pull_of_a_drive, 1.0, {"left": "10 mm"}, noise=0.2),
-    "tether_slack": Case(tether_out, 0.3, noise=0.1),
-    "pan_locked": Case(pan_of_a_move, 9 * DEG),
-    "tilt_locked": Case(tilt_of_a_move, 4 * DEG),
-    "head_slow": Case(ticks_of_a_move, 10.0, noise=1.0),
-    "head_offset": Case(column, 12.0, noise=3.0),
-    "head_backlash": Case(column_by_side, 8.0, noise=4.0),
-    "head_step_loss": Case(column_after_moves, 25.0, noise=5.0),
-    "lander_settling": Case(row, 30.0, {"leans": "1 deg"}, noise=1.0),
-    "image_blur": Case(sharpness, 0.3, {"sigma": 1.5}, noise=0.05),
-    "head_vibration": Case(markers_found, 2.0, {"amplitude": "0.1 deg"}, noise=0.0),
-    "led_off": Case(markers_found, 2.0, {"markers": [1, 3]}, noise=0.0),
-    "led_dim": Case(markers_found, 1.0, {"marker": 2, "factor": "2 %"}, noise=0.0),
-    "led_stuck_on": Case(markers_found, 1.0, {"marker": 2}, noise=0.0),
-    "led_swapped": Case(place_of_marker_0, 10.0, {"markers": [0, 2]}, noise=1.0),
-    "false_reflection": Case(place_of_marker_0, 10.0, {"strength": "200 %"}, noise=1.0),
-    "marker_occluded": Case(markers_found, 1.0, {"marker": 0}, noise=0.0),
-    "sun_moving": Case(light, 0.2, {"elevation": "-25 deg"}, noise=0.05),
-    "cloud": Case(markers_found, 4.0, noise=0.0),
-    "glare": Case(markers_found, 4.0, {"veil": "300 %"}, noise=0.0),
+    "motor_dead": Case(measure.counts_of_a_drive, 0.02, LEFT),
+    "track_weak": Case(measure.counts_of_a_drive, 0.01, LEFT | {"factor": "50 %"}),
+    "motor_runaway": Case(measure.run_on, 0.015, LEFT),
+    "motor_reversed": Case(measure.counts_of_a_drive, 0.05, LEFT),
+    "track_jam": Case(measure.blocked, 1.0, LEFT),
+    "arm_locked": Case(measure.arm_swing, 14 * DEG, noise=0.5 * DEG),
+    "cabin_locked": Case(measure.cabin_swing, 14 * DEG, noise=0.5 * DEG),
+    "slip_burst": Case(measure.advance_of_a_drive, 0.015, noise=0.003),
+    "side_slope_drift": Case(measure.slide_of_a_drive, 0.006, noise=0.002),
+    "low_friction_patch": Case(measure.turn_of_a_turn, 5 * DEG, HERE, noise=2 * DEG),
+    "sand_trap": Case(measure.advance_of_a_drive, 0.045, HERE | {"slip": "100 %"}, noise=0.003),
+    "cabin_grounding": Case(measure.load_on_tracks, 0.15, noise=0.1),
+    "wrong_elevation_model": Case(measure.height_of_a_drive, 0.004, RISE, noise=0.002),
+    "tether_snag": Case(measure.pull_of_a_drive, 1.0, noise=0.2),
+    "tether_capstan": Case(measure.pull_of_a_drive, 1.0, noise=0.2),
+    "spool_jam": Case(measure.pull_of_a_drive, 1.0, noise=0.2),
+    "tether_short": Case(measure.pull_of_a_drive, 1.0, {"left": "10 mm"}, noise=0.2),
+    "tether_slack": Case(measure.tether_out, 0.3, noise=0.1),
+    "pan_locked": Case(measure.pan_of_a_move, 9 * DEG),
+    "tilt_locked": Case(measure.tilt_of_a_move, 4 * DEG),
+    "head_slow": Case(measure.ticks_of_a_move, 10.0, noise=1.0),
+    "head_offset": Case(measure.column, 12.0, noise=3.0),
+    "head_backlash": Case(measure.column_by_side, 8.0, noise=4.0),
+    "head_step_loss": Case(measure.column_after_moves, 25.0, noise=5.0),
+    "lander_settling": Case(measure.row, 30.0, {"leans": "1 deg"}, noise=1.0),
+    "image_blur": Case(measure.sharpness, 0.3, {"sigma": 1.5}, noise=0.05),
+    "head_vibration": Case(measure.markers_found, 2.0, {"amplitude": "0.1 deg"}, noise=0.0),
+    "led_off": Case(measure.markers_found, 2.0, {"markers": [1, 3]}, noise=0.0),
+    "led_dim": Case(measure.markers_found, 1.0, {"marker": 2, "factor": "2 %"}, noise=0.0),
+    "led_stuck_on": Case(measure.markers_found, 1.0, {"marker": 2}, noise=0.0),
+    "led_swapped": Case(measure.place_of_marker_0, 10.0, {"markers": [0, 2]}, noise=1.0),
+    "false_reflection": Case(measure.place_of_marker_0, 10.0, {"strength": "200 %"}, noise=1.0),
+    "marker_occluded": Case(measure.markers_found, 1.0, {"marker": 0}, noise=0.0),
+    "sun_moving": Case(measure.light, 0.2, {"elevation": "-25 deg"}, noise=0.05),
+    "cloud": Case(measure.markers_found, 4.0, noise=0.0),
+    "glare": Case(measure.markers_found, 4.0, {"veil": "300 %"}, noise=0.0),
 }
 OF_THEIR_OWN = {"rock_on_path", "moving_rock"}  # they stay; tested below
 
