@@ -77,8 +77,8 @@ class InsideMargin(Leaf):
 
     def step(self) -> Outcome[object]:
         cross = abs(self.segment.offset(self.pose.x_m, self.pose.y_m).cross_m)
-        worst = cross + self.sigmas * self.pose.sigma_across_m(self.segment)
-        reason = Reason.DONE if worst < self.segment.off_track_m else Reason.OFF_TRACK
+        inside = guidance.room_m(self.pose, self.segment, self.sigmas) > 0.0
+        reason = Reason.DONE if inside else Reason.OFF_TRACK
         return Outcome(reason, f"{cross * 1e3:.0f} mm off the line")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
+from executive import guidance
 from executive.guidance import Belts
 from executive.nodes.action import ActionLeaf
 from executive.nodes.base import FromTree, In, InOut
@@ -66,10 +67,9 @@ class DrivingLeaf(ActionLeaf):
                 return Outcome(Reason.TILT, f"{math.degrees(tilt_rad):.1f} deg")
             if telemetry.tether.tension_n > self.tension_limit:
                 return Outcome(Reason.TETHER, f"pulls with {telemetry.tether.tension_n:.1f} N")
-        if pose.track is not None and self.segment is not None:
-            worst = abs(pose.track.cross_m) + self.sigmas * pose.sigma_across_m(self.segment)
-            if worst >= self.segment.off_track_m:
-                return Outcome(Reason.OFF_TRACK, f"cross-track error may be {worst * 1e3:.0f} mm")
+        room_m = math.inf if self.segment is None else guidance.room_m(pose, self.segment, self.sigmas)
+        if room_m <= 0.0:
+            return Outcome(Reason.OFF_TRACK, f"may be {-room_m * 1e3:.0f} mm beyond the margin")
         return None
 
     def finish(self, outcome: Outcome[TrackReading]) -> Outcome[Any]:
