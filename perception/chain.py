@@ -17,7 +17,8 @@ from executive.types import Array, PoseEstimate, Vec2
 from perception.body import Transform, kernel_cabin, plc_in_body
 from perception.camera import StereoModel
 from perception.head import kernel_head, site_ih
-from perception.kernels.chain import STATE_SIZE, Cabin, Head, project, project_points
+from perception.kernels.chain import STATE_SIZE as STATE_SIZE
+from perception.kernels.chain import Cabin, Head, project, project_points
 from perception.kernels.compiled import plain
 from perception.kernels.optics import Optics
 from perception.rotation import exp_map, matrix_from_quat

@@ -13,11 +13,11 @@ import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
 from executive.types import Array, Vec2
-from perception.body import Transform, plc_in_body
+from perception.body import Transform
 from perception.chain import STATE_SIZE, Chain, ChainState
 from perception.checks import as_array, as_finite
 from perception.kernels.compiled import plain
-from perception.kernels.first_guess import plane_guess
+from perception.kernels.first_guess import body_guess, plane_guess
 from perception.kernels.gauss_newton import Problem, gauss_newton, weights_of
 from perception.kernels.readings import Measured, add_readings
 from perception.kernels.readings import roll_pitch as attitude
@@ -91,21 +91,30 @@ def linear_guess(points_m: Array, markers_plc_m: Array) -> Transform:
 
     Needs markers in the plane z = 0, not on one line; ValueError otherwise. Exact without noise.
     """
-    points = plain(as_finite("points_m", points_m, (None, 3)))
-    markers = plain(as_finite("markers_plc_m", markers_plc_m, (len(points), 3)))
-    if np.abs(markers[:, 2]).max() > 1e-9:
-        raise ValueError("markers_plc_m: got z other than 0, expected markers in the plane z = 0")
-    rotation, position_m, spanned = plane_guess(points, markers)
-    if not spanned:
-        raise ValueError(f"got {len(points)} markers on one line, expected 3 or more that span a plane")
-    return Transform(rotation, position_m)
+    points, markers = _on_plane(points_m, markers_plc_m)
+    return _spanned(len(points), *plane_guess(points, markers))
 
 
 def guess_body(chain: Chain, points_ih_m: Array, sighting: Sighting, markers: list[int]) -> Transform:
     """First guess of the body in site from triangulated `markers` (3 or more), points (n, 3) in ih."""
-    ih_plc = linear_guess(points_ih_m, chain.markers_plc_m[markers])
-    body_plc = plc_in_body(chain.rig.cabin, *sighting.joints_rad)
-    return chain.site_ih(sighting.head_rad) @ ih_plc @ body_plc.inverse()
+    points, chosen = _on_plane(points_ih_m, chain.markers_plc_m[markers])
+    _, head, cabin, _ = chain.kernel_rig
+    return _spanned(len(points), *body_guess(head, cabin, points, chosen, sighting.angles_rad))
+
+
+def _on_plane(points_m: Array, markers_plc_m: Array) -> tuple[Array, Array]:
+    """Points and markers (n, 3) each for the kernels; ValueError unless finite, as many, and z = 0."""
+    points = plain(as_finite("points_m", points_m, (None, 3)))
+    markers = plain(as_finite("markers_plc_m", markers_plc_m, (len(points), 3)))
+    if np.abs(markers[:, 2]).max() > 1e-9:
+        raise ValueError("markers_plc_m: got z other than 0, expected markers in the plane z = 0")
+    return points, markers
+
+
+def _spanned(count: int, rotation: Array, position_m: Array, spanned: bool) -> Transform:
+    if not spanned:
+        raise ValueError(f"got {count} markers on one line, expected 3 or more that span a plane")
+    return Transform(rotation, position_m)
 
 
 def estimate(chain: Chain, sighting: Sighting, start: Transform, prior: Prior | None = None) -> Fix:
@@ -114,28 +123,34 @@ def estimate(chain: Chain, sighting: Sighting, start: Transform, prior: Prior | 
     uv = plain(as_array("uv_px", sighting.uv_px, shape))
     weights, seen = weights_of(uv, plain(as_array("covariance_px2", sighting.covariance_px2, (*shape, 2))))
     readings = Readings.of(chain, sighting, prior)
-    dof = 2 * seen + readings.rows - 6
+    dof = 2 * seen + readings.extra_rows - 6
     if dof < 0:
         raise ValueError(f"got {seen} marker images, expected enough to fix 6 degrees of freedom")
     problem = Problem(*chain.kernel_rig, readings.measured, uv, weights)
     found = gauss_newton(problem, plain(start.rotation), plain(start.position_m), sighting.angles_rad)
-    rotation, position_m, angles_rad, covariance, chi2, steps, converged = found
-    pan, tilt, arm, cabin = angles_rad.tolist()
-    state = ChainState(Transform(rotation, position_m), (pan, tilt), (arm, cabin))
-    reprojected, _ = chain.project(state)
-    residual = np.where((weights[..., 0, :1] > 0) , uv - reprojected, np.nan)
-    return Fix(state, covariance, chi2, dof, reprojected, residual, steps, converged)
+    pan, tilt, arm, cabin = found.angles_rad.tolist()
+    state = ChainState(Transform(found.rotation, found.position_m), (pan, tilt), (arm, cabin))
+    return Fix(
+        state,
+        found.covariance,
+        found.chi2,
+        dof,
+        found.reprojected_px,
+        found.residual_px,
+        found.steps,
+        found.converged,
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class Readings:
     """Everything measured besides pixels: encoders, inclinometers, the prediction.
 
-    `rows` is how many numbers that is, beyond the encoders' four.
+    `extra_rows` is how many numbers that is, beyond the encoders' four.
     """
 
     measured: Measured
-    rows: int
+    extra_rows: int
 
     @classmethod
     def of(cls, chain: Chain, sighting: Sighting, prior: Prior | None) -> Readings:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import FunctionType
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numba import njit
@@ -25,22 +25,20 @@ def compiled(function: Function) -> Function:
     Rounds as Python does, without the freedoms that make sums differ from machine to machine; division by
     zero gives an infinity, as with arrays. Where nothing can be written it is compiled anew in each process.
     """
-    made = njit(error_model="numpy")(function)
-    try:
+    made: Any = njit(error_model="numpy")(function)
+    with contextlib.suppress(RuntimeError):  # no folder to keep it in
         made._cache = _Kept(function)
-    except RuntimeError:
-        return cast(Function, made)  # no folder to keep it in
     return cast(Function, made)
 
 
-class _Kept(FunctionCache):  # type: ignore[misc]
+class _Kept(FunctionCache):
     """Goes stale with any file of the function's folder: numba looks at the function's own file alone, and
     would go on calling what another file said before."""
 
-    def __init__(self, function: FunctionType) -> None:
-        super().__init__(function)
+    def __init__(self, function: Callable[..., object]) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
         stamp = _sources(Path(function.__code__.co_filename).parent)
-        self._cache_file = IndexDataCacheFile(self.cache_path, self._impl.filename_base, stamp)
+        self._cache_file = IndexDataCacheFile(self.cache_path, self._impl.filename_base, stamp)  # type: ignore[no-untyped-call]
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The linear first guess (paper, eqs. 3-5): an affine map of the marker plane, and the rotation nearest to it."""
+"""The linear first guess (paper, eqs. 3-5): an affine map of the plane and the rotation nearest to it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import math
 import numpy as np
 
 from executive.types import Array
+from perception.kernels.chain import Cabin, Head, head_turns, points_in_body
 from perception.kernels.compiled import compiled
+from perception.kernels.rotations import product
 
 _LEAST_SPREAD_M = 1e-6  # of markers across the line that they are nearest to
 
@@ -34,7 +36,7 @@ def plane_guess(points_m: Array, markers_m: Array) -> tuple[Array, Array, bool]:
             across[i, 1] += (points_m[k, i] - middle[i]) * y
     least = (xx + yy - math.hypot(xx - yy, 2 * xy)) / 2
     if not least > _LEAST_SPREAD_M * _LEAST_SPREAD_M:
-        return np.eye(3), middle, False
+        return np.zeros((3, 3)), middle, False
     a, b = _columns(across, yy, -xy, xx, xx * yy - xy * xy)
     aa, ab, bb = (a * a).sum(), (a * b).sum(), (b * b).sum()
     root = math.sqrt(max(aa * bb - ab * ab, 0.0))
@@ -47,6 +49,28 @@ def plane_guess(points_m: Array, markers_m: Array) -> tuple[Array, Array, bool]:
         j, k = (i + 1) % 3, (i + 2) % 3
         rotation[i, 2] = x_axis[j] * y_axis[k] - x_axis[k] * y_axis[j]
     return rotation, middle - x_axis * origin[0] - y_axis * origin[1], True
+
+
+@compiled
+def body_guess(
+    head: Head, cabin: Cabin, points_ih_m: Array, markers_plc_m: Array, angles_rad: Array
+) -> tuple[Array, Array, bool]:
+    """Rotation and position of the body in site, from the plane seen at points (n, 3) in `ih`; see above."""
+    ih_plc, plane_ih_m, spanned = plane_guess(points_ih_m, markers_plc_m)
+    site_ih, _, _ = head_turns(head, angles_rad[0], angles_rad[1])
+    corners = np.zeros((4, 3))  # the plane's axes, and its origin
+    for i in range(3):
+        corners[i, i] = 1.0
+    in_body, _ = points_in_body(cabin, corners, angles_rad[2], angles_rad[3])
+    plc_body, origin_m = np.empty((3, 3)), in_body[3]
+    for i in range(3):
+        plc_body[i] = in_body[i] - origin_m
+    rotation = product(product(site_ih, ih_plc), plc_body)
+    position_m = np.empty(3)
+    for i in range(3):
+        position_m[i] = (site_ih[i] * plane_ih_m).sum() - (rotation[i] * origin_m).sum()
+    position_m[2] += head.mast_height_m
+    return rotation, position_m, spanned
 
 
 @compiled

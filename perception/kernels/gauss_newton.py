@@ -21,7 +21,7 @@ _MAX_TURN_RAD = 0.5  # longest rotation of one step
 
 
 class Problem(NamedTuple):
-    """The rig with its markers (n, 3), the readings, and centres (c, n, 2) with their weights (c, n, 2, 2)."""
+    """The rig, its markers (n, 3), the readings, and centres (c, n, 2) with weights (c, n, 2, 2)."""
 
     optics: Optics
     head: Head
@@ -30,6 +30,21 @@ class Problem(NamedTuple):
     measured: Measured
     uv_px: Array
     weights: Array
+
+
+class Found(NamedTuple):
+    """A state with its body's covariance (6, 6), chi-square, pixels (c, n, 2) and what measured ones are off
+    them, NaN where not seen."""
+
+    rotation: Array
+    position_m: Array
+    angles_rad: Array
+    covariance: Array
+    chi2: float
+    steps: int
+    converged: bool
+    reprojected_px: Array
+    residual_px: Array
 
 
 @compiled
@@ -51,7 +66,7 @@ def weights_of(uv_px: Array, covariance_px2: Array) -> tuple[Array, int]:
 def normal_equations(
     problem: Problem, rotation: Array, position_m: Array, angles: Array
 ) -> tuple[Array, Array, float]:
-    """Information (10, 10), right-hand side (10,) and chi-square at a state (eqs. 10, 11)."""
+    """Information (10, 10), its lower half, right-hand side (10,), chi-square at a state (eqs. 10, 11)."""
     optics, head, cabin, markers_plc_m, measured, uv_px, weights = problem
     uv, J = project(optics, head, cabin, markers_plc_m, rotation, position_m, angles)
     H, g = np.zeros((STATE_SIZE, STATE_SIZE)), np.zeros(STATE_SIZE)
@@ -67,16 +82,14 @@ def normal_equations(
                 weighted_u = W[0, 0] * by_u[i] + W[1, 0] * by_v[i]
                 weighted_v = W[0, 1] * by_u[i] + W[1, 1] * by_v[i]
                 g[i] += weighted_u * off_u + weighted_v * off_v
-                for j in range(STATE_SIZE):
+                for j in range(i + 1):
                     H[i, j] += weighted_u * by_u[j] + weighted_v * by_v[j]
     return H, g, cost
 
 
 @compiled
-def gauss_newton(
-    problem: Problem, rotation: Array, position_m: Array, angles: Array
-) -> tuple[Array, Array, Array, Array, float, int, bool]:
-    """From a start to (rotation, position, angles, body covariance (6, 6), chi-square, steps, converged)."""
+def gauss_newton(problem: Problem, rotation: Array, position_m: Array, angles: Array) -> Found:
+    """The state that fits best, from a start (rotation, position, angles)."""
     H, g, cost = normal_equations(problem, rotation, position_m, angles)
     longest, steps = math.inf, 0
     while steps < _MAX_STEPS and not longest < _CONVERGED:
@@ -92,7 +105,14 @@ def gauss_newton(
             longest = np.abs(step).max()
         rotation, position_m, angles, cost = turned, moved, aimed, cost_new
     converged = longest < _CONVERGED and math.isfinite(cost)
-    return rotation, position_m, angles, inverted(H, 6), cost, steps, converged
+    optics, head, cabin, markers, _, uv_px, weights = problem
+    uv, _ = project(optics, head, cabin, markers, rotation, position_m, angles)
+    residual = np.full(uv.shape, math.nan)
+    for c in range(len(uv)):
+        for k in range(uv.shape[1]):
+            if weights[c, k, 0, 0] != 0.0:
+                residual[c, k] = uv_px[c, k] - uv[c, k]
+    return Found(rotation, position_m, angles, inverted(H, 6), cost, steps, converged, uv, residual)
 
 
 @compiled

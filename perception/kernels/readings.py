@@ -69,7 +69,8 @@ def _add_tilt(measured: Measured, rotation: Array, H: Array, g: Array) -> float:
         g[3 + i] += measured.tilt_weight * (J[0, i] * off_roll + J[1, i] * off_pitch)
         for j in range(3):
             H[3 + i, 3 + j] += measured.tilt_weight * (J[0, i] * J[0, j] + J[1, i] * J[1, j])
-    return measured.tilt_weight * (off_roll * off_roll + off_pitch * off_pitch)
+    cost: float = measured.tilt_weight * (off_roll * off_roll + off_pitch * off_pitch)
+    return cost
 
 
 @compiled
