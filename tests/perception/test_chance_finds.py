@@ -12,7 +12,8 @@ from perception.chain import STATE_SIZE
 from perception.chance_finds import joint_threshold, log_distinct_poses, unit_information
 from perception.difference import Difference
 from perception.exposure import view_of
-from perception.likelihood import Evidence, _Point, most_likely, observed_covariance
+from perception.kernels.climb import point_at
+from perception.likelihood import Evidence, _place, _task, most_likely, observed_covariance
 from perception.pose import Readings, Sighting
 from perception.psf import marker_spread
 from tests.perception.far_trials import draw
@@ -73,19 +74,13 @@ def test_the_covariance_of_a_faint_rover_allows_for_the_tails_of_its_peak(settin
     peak = most_likely(chain, evidence, exact, state, np.full(4, flux), shared=True)
     told = observed_covariance(chain, evidence, exact, peak, shared=True)
 
-    together = np.ones((4, 1))
-    at = _Point.of(chain, evidence, exact, peak.state, peak.flux_counts, together)
+    task = _task(chain, evidence, exact, np.ones((4, 1)))
+    at = point_at(task, _place(peak.state, peak.flux_counts))
     rng = np.random.default_rng(5)
     steps = rng.multivariate_normal(np.zeros(STATE_SIZE + 1), np.linalg.inv(at.information), 3000)
     gaussian = -0.5 * np.einsum("ni,ij,nj->n", steps, at.information, steps)
-    value = np.array(
-        [
-            _Point.of(
-                chain, evidence, exact, peak.state.moved(s[:10]), peak.flux_counts + s[10], together
-            ).value
-            for s in steps
-        ]
-    )
+    places = [_place(peak.state.moved(s[:10]), peak.flux_counts + s[10]) for s in steps]
+    value = np.array([point_at(task, place).value for place in places])
     weight = np.exp(np.clip((value - at.value) / 2 - gaussian, None, 3.0))
     free = [0, 1, 5]
     of_peak = np.average(steps[:, free] ** 2, axis=0, weights=weight)
