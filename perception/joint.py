@@ -20,10 +20,11 @@ from perception.chain import Chain, ChainState
 from perception.chance_finds import joint_threshold
 from perception.difference import Difference
 from perception.exposure import emission
-from perception.likelihood import Evidence, Likely, most_likely, observed_covariance
+from perception.likelihood import Evidence, Likely, most_likely
 from perception.markers import filter_snr
 from perception.plausibility import Rejection, faces_cameras
 from perception.pose import Fix, Readings, Sighting, chi2_limit
+from perception.posterior import posterior
 from perception.prediction import Expectation
 from perception.psf import Spread
 from perception.search import FilterImages, Hypothesis, search
@@ -86,9 +87,11 @@ def joint_fix(
     shining = int((best.flux_counts > 0).sum())
     if shining < _LEAST_MARKERS:
         return Rejection(f"{shining} of {len(best.flux_counts)} markers shine at the best pose", shining)
-    best = replace(best, covariance=observed_covariance(chain, evidence, readings, best, shared))
-    note = f"joint SNR {best.snr:.1f}, {threshold:.1f} needed"
-    return _gated(chain, best, lead, note)
+    gated = _gated(chain, best, lead, f"joint SNR {best.snr:.1f}, {threshold:.1f} needed")
+    if isinstance(gated, Rejection):
+        return gated
+    state, covariance = posterior(chain, evidence, readings, best, shared)
+    return _settled(chain, gated, state, covariance)
 
 
 def relative_gain(chain: Chain, state: ChainState) -> Array:
@@ -176,6 +179,14 @@ def _gated(chain: Chain, best: Likely, lead: float, note: str) -> JointFix | Rej
     if not faces_cameras(chain, fix):
         return Rejection("the markers would show their backs", seen)
     return JointFix(fix, seen, detected, note)
+
+
+def _settled(chain: Chain, found: JointFix, state: ChainState, covariance: Array) -> JointFix:
+    """The same fix at the mean of what the images allow instead of at the peak."""
+    uv, _ = chain.project(state)
+    residual = np.where(np.isfinite(found.detected_px), found.detected_px - uv, np.nan)
+    fix = replace(found.fix, state=state, covariance=covariance, reprojected_px=uv, residual_px=residual)
+    return replace(found, fix=fix)
 
 
 def _as_fix(chain: Chain, best: Likely, alive: NDArray[np.bool_]) -> tuple[Fix, Array]:

@@ -110,10 +110,10 @@ def most_likely(
     return Likely(state, flux, covariance, snr, at.local, at.readings_chi2, count, converged)
 
 
-def observed_covariance(
+def observed_information(
     chain: Chain, evidence: Evidence, readings: Readings, at: Likely, shared: bool
 ) -> Array:
-    """Covariance (6, 6) of the body pose from the likelihood's own curvature, by central differences.
+    """Information (10 + fluxes, square) from the likelihood's own curvature, by central differences.
 
     Of faint light each image has its luck; the curvature knows it, the expected information does not. That
     one is taken where the likelihood is not curved downwards in all directions.
@@ -129,25 +129,7 @@ def observed_covariance(
     steps = np.diag(_PROBE_SIGMAS / np.sqrt(np.diag(expected)))
     H = np.stack([(gradient(-s) - gradient(s)) / (2 * s.max()) for s in steps])
     H = (H + H.T) / 2
-    curved = bool(np.linalg.eigvalsh(H)[0] > 0)
-    information = _with_tails(H if curved else expected, readings, at)
-    covariance: Array = np.asarray(np.linalg.inv(information)[:6, :6], dtype=np.float64)
-    return (covariance + covariance.T) / 2
-
-
-def _with_tails(information: Array, readings: Readings, at: Likely) -> Array:
-    """The information (n, n) whose inverse is the covariance of a likelihood with the tails that light has.
-
-    Twice the log likelihood falls off as snr^2 exp(-q), q quadratic in the d directions that the images
-    determine, not as snr^2 (1 - q). To first order in 1 / snr^2 the covariance of such a peak is that of its
-    curvature times 1 + (d + 2) / snr^2.
-    """
-    read = np.zeros_like(information)
-    readings.add_to(at.state, read[:STATE_SIZE, :STATE_SIZE], np.zeros(STATE_SIZE))
-    images = information - read
-    fluxes = len(information) - STATE_SIZE
-    directions = float(np.trace(np.linalg.solve(information, images))) - fluxes
-    return np.asarray(read + images / (1 + (directions + 2) / at.snr**2), dtype=np.float64)
+    return H if np.linalg.eigvalsh(H)[0] > 0 else expected
 
 
 @dataclass(frozen=True, eq=False)
