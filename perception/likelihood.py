@@ -11,11 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from executive.types import Array
 from perception.chain import STATE_SIZE, Chain, ChainState
 from perception.difference import Difference
+from perception.kernels.compiled import plain
+from perception.kernels.light import joined
+from perception.kernels.light import local_fits as cameras_fits
 from perception.pose import Readings
 from perception.psf import Spread
 
@@ -45,10 +47,10 @@ class Evidence:
     ) -> Evidence:
         pad = _radius(spread)
         rim = ((0, 0), (pad, pad), (pad, pad))
-        left, right = (np.pad(c.images.astype(np.float64), rim) for c in cameras)
-        weights = [np.pad(1.0 / c.sigma.astype(np.float64) ** 2, rim) for c in cameras]
-        corners = [np.array(corner) - pad for corner in corners_px]
-        return cls((left, right), (weights[0], weights[1]), (corners[0], corners[1]), spread, gain)
+        left, right = (np.pad(plain(c.images), rim) for c in cameras)
+        weights = [np.pad(plain(c.sigma) ** -2, rim) for c in cameras]
+        corners = [plain(corner) - pad for corner in corners_px]
+        return cls((left, right), (weights[0], weights[1]), (corners[0], corners[1]), spread, plain(gain))
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,17 +157,9 @@ class _Point:
     ) -> _Point:
         uv, J = chain.project(state)
         local = local_fits(evidence, uv, flux)
-        size = STATE_SIZE + groups.shape[1]
-        G = np.zeros((*uv.shape[:2], 3, size))
-        G[..., 0, STATE_SIZE:] = evidence.gain[..., None] * groups
-        G[..., 1:, :STATE_SIZE] = J
-        flat = G.reshape(-1, size)
-        information = flat.T @ (local.information @ G).reshape(-1, size)
-        gradient = flat.T @ local.score.reshape(-1)
-        H, g = np.zeros((STATE_SIZE, STATE_SIZE)), np.zeros(STATE_SIZE)
-        chi2 = readings.add_to(state, H, g)
-        information[:STATE_SIZE, :STATE_SIZE] += H
-        gradient[:STATE_SIZE] += g
+        light_by_flux = evidence.gain[..., None] * groups
+        information, gradient = joined(J, light_by_flux, local.information, local.score)
+        chi2 = readings.add_to(state, information[:STATE_SIZE, :STATE_SIZE], gradient[:STATE_SIZE])
         return cls(local.gain - chi2, gradient, information, J, local, chi2)
 
     def step(self, damping: float) -> Array:
@@ -175,48 +169,13 @@ class _Point:
 
 def local_fits(evidence: Evidence, uv_px: Array, flux: Array) -> Local:
     """Each marker's fit of (flux, column, row) at pixels (2, n, 2), fluxes (n,) [counts]."""
-    radius, spread = _radius(evidence.spread), evidence.spread
-    offsets = np.arange(-radius, radius + 1)
-    information, score = np.zeros((2, len(flux), 3, 3)), np.zeros((2, len(flux), 3))
-    total = 0.0
-    for c in (0, 1):
-        middle = np.rint(np.nan_to_num(uv_px[c], nan=-1e6)).astype(int)
-        patch, weight = _patches(evidence, c, middle, offsets)
-        du, dv = (offsets + (middle[:, i] - uv_px[c, :, i])[:, None] for i in (0, 1))
-        pu, pv, su, sv = (
-            spread.profile(du),
-            spread.profile(dv),
-            spread.profile_slope(du),
-            spread.profile_slope(dv),
-        )
-        light = (flux * evidence.gain[c])[:, None, None]
-        shape = pv[:, :, None] * pu[:, None, :]
-        along_u, along_v = pv[:, :, None] * su[:, None, :], sv[:, :, None] * pu[:, None, :]
-        T = np.stack([shape, -light * along_u, -light * along_v], axis=1).reshape(len(flux), 3, -1)
-        rest = patch - light * shape
-        weighted = (T * weight.reshape(len(flux), 1, -1)).transpose(0, 2, 1)
-        information[c] = T @ weighted
-        score[c] = (rest.reshape(len(flux), 1, -1) @ weighted)[:, 0]
-        total += float((weight * (patch**2 - rest**2)).sum())
-    return Local(information, score, total)
-
-
-def _patches(
-    evidence: Evidence, camera: int, middle: NDArray[np.int_], offsets: NDArray[np.int_]
-) -> tuple[Array, Array]:
-    """Images and weights (n, k, k) around whole pixels (n, 2); patches off the window weigh nothing."""
-    images, weights = evidence.images[camera], evidence.weights[camera]
-    place = middle - evidence.corners_px[camera]
-    size = np.array(images.shape[:0:-1])
-    reach = len(offsets) // 2
-    inside = np.all((place >= reach) & (place < size - reach), axis=1, keepdims=True)
-    place = np.where(inside, place, reach)
-    index = (
-        np.arange(len(middle))[:, None, None],
-        (place[:, 1, None] + offsets)[:, :, None],
-        (place[:, 0, None] + offsets)[:, None, :],
-    )
-    return images[index], weights[index] * inside[..., None]
+    spread, fits = evidence.spread, []
+    for c, uv in enumerate(uv_px):
+        light = flux * evidence.gain[c]
+        seen = evidence.images[c], evidence.weights[c], evidence.corners_px[c]
+        fits.append(cameras_fits(*seen, uv, light, spread.box_px, spread.sigma_px, _radius(spread)))
+    information, score, gain = zip(*fits, strict=True)
+    return Local(np.stack(information), np.stack(score), sum(gain))
 
 
 def _radius(spread: Spread) -> int:

@@ -18,6 +18,7 @@ from perception.body import Transform
 from perception.chain import Chain, ChainState
 from perception.follow_up import pointing_at
 from perception.rotation import exp_map
+from tests.perception.sensor.noise import add_noise
 
 FULL_WELL_E, BACKGROUND, READ_E, BITS = 160_000.0, 0.40, 40.0, 10
 GAIN_E = FULL_WELL_E / (2**BITS - 1)
@@ -60,8 +61,10 @@ def background_e(rng: np.random.Generator, shape: tuple[int, int], texture: floa
 
 
 def expose(rng: np.random.Generator, expected_e: np.ndarray) -> np.ndarray:
-    noisy = expected_e + np.sqrt(expected_e + READ_E**2) * rng.standard_normal(expected_e.shape)
-    return np.clip(np.rint(noisy / GAIN_E), 0, 2**BITS - 1).astype(np.uint16)
+    """A frame (h, w) of what is expected [e-], with a real sensor's noise [counts]."""
+    counts = np.empty(expected_e.shape, dtype=np.uint16)
+    add_noise(rng, np.ascontiguousarray(expected_e), READ_E, GAIN_E, 2.0**BITS - 1, counts)
+    return counts
 
 
 def sequence(

@@ -69,7 +69,7 @@ def test_a_region_without_volume_or_a_rate_that_is_none_is_refused(setting, read
 def test_the_covariance_of_a_faint_rover_allows_for_the_tails_of_its_peak(setting, readings, spread):
     """Against a chain of random steps over states and flux, which knows nothing of curvatures."""
     chain, state = setting.true.chain, setting.said
-    exact = replace(readings, encoder=np.array([*state.head_rad, *state.joints_rad]))
+    exact = replace(readings, measured=readings.measured._replace(encoder_rad=state.angles_rad))
     evidence, flux = _noiseless(chain, state, spread, snr=8.0)
     peak = most_likely(chain, evidence, exact, state, np.full(4, flux), shared=True)
     mean, told = posterior(chain, evidence, exact, peak, shared=True)
