@@ -32,7 +32,11 @@ def draw(tables: dict[str, list[Row]], path: Path) -> None:
             axis.loglog(there, error, style, color=colour, label=f"RMS error, {label}")
         axis.set_xticks(ranges, [f"{row.range_m:g}\n{row.demand.pairs}" for row in rows], fontsize=9)
         axis.minorticks_off()
-        axis.set(xlabel="range [m], and below it the pairs N of each LED", ylabel=f"{name} [{unit}]", title=name.capitalize())
+        axis.set(
+            xlabel="range [m], and below it the pairs N of each LED",
+            ylabel=f"{name} [{unit}]",
+            title=name.capitalize(),
+        )
         axis.margins(x=0.1, y=0.1)
         axis.grid(alpha=0.3)
         axis.legend()

@@ -45,7 +45,7 @@ class Evidence:
     def of(
         cls, cameras: Sequence[Difference], corners_px: Sequence[tuple[int, int]], spread: Spread, gain: Array
     ) -> Evidence:
-        pad = _radius(spread)
+        pad = patch_radius(spread)
         rim = ((0, 0), (pad, pad), (pad, pad))
         left, right = (np.pad(plain(c.images), rim) for c in cameras)
         weights = [np.pad(plain(c.sigma) ** -2, rim) for c in cameras]
@@ -85,7 +85,7 @@ def most_likely(
 ) -> Likely | None:
     """Climb the likelihood from `start`; `shared` ties all markers to one flux. None if no light is found."""
     flux = np.where(flux_counts > 0, flux_counts, 0.0)
-    groups = _groups(flux, shared)
+    groups = flux_groups(flux, shared)
     state = start
     at = _Point.of(chain, evidence, readings, state, flux, groups)
     damping, converged, count = 1e-2, False, 0
@@ -120,7 +120,7 @@ def observed_information(
     Of faint light each image has its luck; the curvature knows it, the expected information does not. That
     one is taken where the likelihood is not curved downwards in all directions.
     """
-    groups = _groups(at.flux_counts, shared)
+    groups = flux_groups(at.flux_counts, shared)
 
     def gradient(step: Array) -> Array:
         flux = at.flux_counts + groups @ step[STATE_SIZE:]
@@ -173,16 +173,17 @@ def local_fits(evidence: Evidence, uv_px: Array, flux: Array) -> Local:
     for c, uv in enumerate(uv_px):
         light = flux * evidence.gain[c]
         seen = evidence.images[c], evidence.weights[c], evidence.corners_px[c]
-        fits.append(cameras_fits(*seen, uv, light, spread.box_px, spread.sigma_px, _radius(spread)))
+        fits.append(cameras_fits(*seen, uv, light, spread.box_px, spread.sigma_px, patch_radius(spread)))
     information, score, gain = zip(*fits, strict=True)
     return Local(np.stack(information), np.stack(score), sum(gain))
 
 
-def _radius(spread: Spread) -> int:
+def patch_radius(spread: Spread) -> int:
+    """How far from a marker's middle its light is looked at [px]."""
     return spread.radius_px + 1
 
 
-def _groups(flux: Array, shared: bool) -> Array:
+def flux_groups(flux: Array, shared: bool) -> Array:
     """Which fluxes (n, groups) change together; a marker without flux has none."""
     own: Array = np.eye(len(flux))[:, np.flatnonzero(flux)]
     return own.sum(axis=1, keepdims=True) if shared else own

@@ -11,12 +11,14 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import norm, qmc
 
 from executive.types import Array
 from perception.chain import STATE_SIZE, Chain, ChainState
-from perception.likelihood import Evidence, Likely, local_fits, observed_information
+from perception.kernels.compiled import plain
+from perception.kernels.likelihoods import Light, Seen
+from perception.kernels.likelihoods import log_likelihoods as kernel
+from perception.likelihood import Evidence, Likely, flux_groups, observed_information, patch_radius
 from perception.pose import Readings
 
 _DRAWS = 512  # of each sign
@@ -33,16 +35,13 @@ def posterior(
     Fluxes are integrated out: one of all markers if `shared`, else one of each that shines. Both are
     bit-for-bit the same for the same input.
     """
-    lit = peak.flux_counts > 0
     curvature = observed_information(chain, evidence, readings, peak, shared)
     mean: Array = np.zeros(STATE_SIZE)
     P: Array = np.asarray(np.linalg.inv(curvature), dtype=np.float64)[:STATE_SIZE, :STATE_SIZE]
     for _ in range(_ROUNDS):
         steps = mean + _draws() @ np.linalg.cholesky(_WIDER * (P + P.T) / 2).T
-        log_density = np.array(
-            [log_likelihood(chain, evidence, readings, peak.state.moved(s), lit, shared) for s in steps]
-        )
-        log_weight = log_density + 0.5 * (_draws() ** 2).sum(axis=1)
+        density = log_likelihoods(chain, evidence, readings, peak, shared, steps)
+        log_weight = density + 0.5 * (_draws() ** 2).sum(axis=1)
         weight = np.exp(log_weight - log_weight.max())
         weight /= weight.sum()
         mean = weight @ steps
@@ -52,23 +51,25 @@ def posterior(
     return peak.state.moved(mean), (P + P.T)[:6, :6] / 2
 
 
-def log_likelihood(
-    chain: Chain,
-    evidence: Evidence,
-    readings: Readings,
-    state: ChainState,
-    lit: NDArray[np.bool_],
-    shared: bool,
-) -> float:
-    """Log likelihood of a state, of the best fluxes of the markers in `lit` (n,)."""
-    uv, _ = chain.project(state)
-    local = local_fits(evidence, uv, np.zeros(len(lit)))
-    power = (local.information[..., 0, 0] * evidence.gain**2)[:, lit].sum(axis=0)
-    pull = (local.score[..., 0] * evidence.gain)[:, lit].sum(axis=0)
-    if shared:
-        power, pull = power.sum(keepdims=True), pull.sum(keepdims=True)
-    light = float((np.maximum(pull, 0.0) ** 2 / np.maximum(power, 1e-30)).sum())
-    return 0.5 * (light - readings.add_to(state, np.zeros((STATE_SIZE, STATE_SIZE)), np.zeros(STATE_SIZE)))
+def log_likelihoods(
+    chain: Chain, evidence: Evidence, readings: Readings, peak: Likely, shared: bool, steps: Array
+) -> Array:
+    """Log likelihoods (k,) of the peak's state moved by steps (k, 10), of the best fluxes of what shines."""
+    body, spread = peak.state.site_body, evidence.spread
+    cameras = evidence.images, evidence.weights, evidence.corners_px, evidence.gain
+    left, right = (Seen(*camera) for camera in zip(*cameras, strict=True))
+    return kernel(
+        *chain.kernel_rig,
+        readings.measured,
+        left,
+        right,
+        Light(spread.box_px, spread.sigma_px, patch_radius(spread)),
+        plain(flux_groups(peak.flux_counts, shared)),
+        plain(body.rotation),
+        plain(body.position_m),
+        peak.state.angles_rad,
+        plain(steps),
+    )
 
 
 @cache

@@ -95,12 +95,12 @@ def gauss_newton(problem: Problem, rotation: Array, position_m: Array, angles: A
     while steps < _MAX_STEPS and not longest < _CONVERGED:
         steps += 1
         step = _limited(H, g)
-        turned, moved, aimed = _stepped(rotation, position_m, angles, step)
+        turned, moved, aimed = stepped(rotation, position_m, angles, step)
         H, g, cost_new = normal_equations(problem, turned, moved, aimed)
         longest = np.abs(step).max()
         while not cost_new <= cost + 1e-9 * (1 + cost) and longest > _CONVERGED:
             step /= 4
-            turned, moved, aimed = _stepped(rotation, position_m, angles, step)
+            turned, moved, aimed = stepped(rotation, position_m, angles, step)
             H, g, cost_new = normal_equations(problem, turned, moved, aimed)
             longest = np.abs(step).max()
         rotation, position_m, angles, cost = turned, moved, aimed, cost_new
@@ -116,7 +116,8 @@ def gauss_newton(problem: Problem, rotation: Array, position_m: Array, angles: A
 
 
 @compiled
-def _stepped(rotation: Array, position_m: Array, angles: Array, step: Array) -> tuple[Array, Array, Array]:
+def stepped(rotation: Array, position_m: Array, angles: Array, step: Array) -> tuple[Array, Array, Array]:
+    """A state changed by a step of ten."""
     return product(exp_map(step[3:6]), rotation), position_m + step[:3], angles + step[6:]
 
 
