@@ -74,7 +74,7 @@ def test_the_covariance_of_a_faint_rover_allows_for_the_tails_of_its_peak(settin
     peak = most_likely(chain, evidence, exact, state, np.full(4, flux), shared=True)
     mean, told = posterior(chain, evidence, exact, peak, shared=True)
 
-    walked = _walk(chain, evidence, exact, peak, np.random.default_rng(5), 7000)
+    walked = _walk(chain, evidence, exact, peak, np.random.default_rng(5), 12000)
     free = [0, 1, 5]
     sigma = walked[:, free].std(axis=0)
     np.testing.assert_allclose(np.sqrt(np.diag(told))[free], sigma, rtol=0.15)
