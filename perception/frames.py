@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.rig import SensorCalibration
-from executive.types import Images, Window
+from executive.types import Centres, Images, Window
 
 _MOST_SATURATED = 0.1  # share of pixels; they do not tell their noise, which is taken from all of them
 
@@ -37,6 +37,13 @@ def _check_stack(
     full = 2**sensor.bits - 1
     if (largest := int(counts.max())) > full:
         raise ValueError(f"{name} camera: got counts up to {largest}, expected {full} at most")
+
+
+def overexposed(data: Images | Centres, sensor: SensorCalibration) -> bool:
+    """Whether either camera got too much light."""
+    if isinstance(data, Centres):
+        return any(data.saturated)
+    return any(saturation(counts, sensor) for counts in data.counts)
 
 
 def saturation(counts: NDArray[np.uint16], sensor: SensorCalibration) -> str:
