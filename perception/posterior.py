@@ -16,14 +16,14 @@ from scipy.stats import norm, qmc
 from executive.types import Array
 from perception.chain import STATE_SIZE, Chain, ChainState
 from perception.kernels.compiled import plain
-from perception.kernels.likelihoods import Light, Seen
-from perception.kernels.likelihoods import log_likelihoods as kernel
-from perception.likelihood import Evidence, Likely, flux_groups, observed_information, patch_radius
+from perception.kernels.likelihoods import log_likelihoods
+from perception.likelihood import Evidence, Likely, observed_information, place_of, task_of
 from perception.pose import Readings
 
 _DRAWS = 512  # of each sign
 _WIDER = 1.4  # variance drawn over that of the last guess: tails must be drawn to be weighed
 _ROUNDS = 3
+_LEAST_EFFECTIVE = 4 * STATE_SIZE  # draws that count, below which their covariance is none
 _EFFECTIVE = 0.3  # share of draws that must count before moments are believed
 
 
@@ -32,44 +32,28 @@ def posterior(
 ) -> tuple[ChainState, Array]:
     """The mean state and the covariance (6, 6) of its body pose, given what found this peak.
 
-    Fluxes are integrated out: one of all markers if `shared`, else one of each that shines. Both are
-    bit-for-bit the same for the same input.
+    Fluxes are integrated out: one of all markers if `shared`, else one of each that shines. Where the draws
+    miss the likelihood, which then is no peak, it is the state found, with the covariance of its curvature.
     """
+    task = task_of(chain, evidence, readings, peak.flux_counts, shared)
+    place = place_of(peak.state, peak.flux_counts)
     curvature = observed_information(chain, evidence, readings, peak, shared)
     mean: Array = np.zeros(STATE_SIZE)
     P: Array = np.asarray(np.linalg.inv(curvature), dtype=np.float64)[:STATE_SIZE, :STATE_SIZE]
     for _ in range(_ROUNDS):
         steps = mean + _draws() @ np.linalg.cholesky(_WIDER * (P + P.T) / 2).T
-        density = log_likelihoods(chain, evidence, readings, peak, shared, steps)
+        density = log_likelihoods(task, place, plain(steps))
         log_weight = density + 0.5 * (_draws() ** 2).sum(axis=1)
         weight = np.exp(log_weight - log_weight.max())
         weight /= weight.sum()
+        effective = 1.0 / float((weight**2).sum())
+        if effective < _LEAST_EFFECTIVE:
+            break
         mean = weight @ steps
         P = (steps - mean).T @ ((steps - mean) * weight[:, None])
-        if 1.0 / float((weight**2).sum()) >= _EFFECTIVE * len(steps):
+        if effective >= _EFFECTIVE * len(steps):
             break
     return peak.state.moved(mean), (P + P.T)[:6, :6] / 2
-
-
-def log_likelihoods(
-    chain: Chain, evidence: Evidence, readings: Readings, peak: Likely, shared: bool, steps: Array
-) -> Array:
-    """Log likelihoods (k,) of the peak's state moved by steps (k, 10), of the best fluxes of what shines."""
-    body, spread = peak.state.site_body, evidence.spread
-    cameras = evidence.images, evidence.weights, evidence.corners_px, evidence.gain
-    left, right = (Seen(*camera) for camera in zip(*cameras, strict=True))
-    return kernel(
-        *chain.kernel_rig,
-        readings.measured,
-        left,
-        right,
-        Light(spread.box_px, spread.sigma_px, patch_radius(spread)),
-        plain(flux_groups(peak.flux_counts, shared)),
-        plain(body.rotation),
-        plain(body.position_m),
-        peak.state.angles_rad,
-        plain(steps),
-    )
 
 
 @cache

@@ -13,7 +13,7 @@ from perception.kernels.compiled import compiled
 from perception.kernels.linear import factor, inverted, solve
 from perception.kernels.optics import Optics
 from perception.kernels.readings import Measured, add_readings
-from perception.kernels.rotations import exp_map, product
+from perception.kernels.rotations import moved
 
 _MAX_STEPS = 20
 _CONVERGED = 1e-7  # m and rad
@@ -95,15 +95,15 @@ def gauss_newton(problem: Problem, rotation: Array, position_m: Array, angles: A
     while steps < _MAX_STEPS and not longest < _CONVERGED:
         steps += 1
         step = _limited(H, g)
-        turned, moved, aimed = stepped(rotation, position_m, angles, step)
-        H, g, cost_new = normal_equations(problem, turned, moved, aimed)
+        turned, shifted, aimed = _stepped(rotation, position_m, angles, step)
+        H, g, cost_new = normal_equations(problem, turned, shifted, aimed)
         longest = np.abs(step).max()
         while not cost_new <= cost + 1e-9 * (1 + cost) and longest > _CONVERGED:
             step /= 4
-            turned, moved, aimed = stepped(rotation, position_m, angles, step)
-            H, g, cost_new = normal_equations(problem, turned, moved, aimed)
+            turned, shifted, aimed = _stepped(rotation, position_m, angles, step)
+            H, g, cost_new = normal_equations(problem, turned, shifted, aimed)
             longest = np.abs(step).max()
-        rotation, position_m, angles, cost = turned, moved, aimed, cost_new
+        rotation, position_m, angles, cost = turned, shifted, aimed, cost_new
     converged = longest < _CONVERGED and math.isfinite(cost)
     optics, head, cabin, markers, _, uv_px, weights = problem
     uv, _ = project(optics, head, cabin, markers, rotation, position_m, angles)
@@ -116,9 +116,9 @@ def gauss_newton(problem: Problem, rotation: Array, position_m: Array, angles: A
 
 
 @compiled
-def stepped(rotation: Array, position_m: Array, angles: Array, step: Array) -> tuple[Array, Array, Array]:
-    """A state changed by a step of ten."""
-    return product(exp_map(step[3:6]), rotation), position_m + step[:3], angles + step[6:]
+def _stepped(rotation: Array, position_m: Array, angles: Array, step: Array) -> tuple[Array, Array, Array]:
+    turned, shifted = moved(rotation, position_m, step)
+    return turned, shifted, angles + step[6:]
 
 
 @compiled

@@ -67,3 +67,9 @@ def product(A: Array, B: Array) -> Array:
         for j in range(3):
             out[i, j] = A[i, 0] * B[0, j] + A[i, 1] * B[1, j] + A[i, 2] * B[2, j]
     return out
+
+
+@compiled
+def moved(rotation: Array, position_m: Array, step: Array) -> tuple[Array, Array]:
+    """A pose changed by a step that begins with (position, rotation vector on the left)."""
+    return product(exp_map(step[3:6]), rotation), position_m + step[:3]

@@ -12,7 +12,8 @@ from perception.chain import STATE_SIZE
 from perception.chance_finds import joint_threshold, log_distinct_poses, unit_information
 from perception.difference import Difference
 from perception.exposure import view_of
-from perception.likelihood import Evidence, _Point, most_likely
+from perception.kernels.climb import point_at
+from perception.likelihood import Evidence, most_likely, place_of, task_of
 from perception.pose import Readings, Sighting
 from perception.posterior import posterior
 from perception.psf import marker_spread
@@ -85,13 +86,12 @@ def test_the_covariance_of_a_faint_rover_allows_for_the_tails_of_its_peak(settin
 
 def _walk(chain, evidence, readings, peak, rng, count):
     """Steps (count, 11) of state and flux from the peak, by Metropolis's rule."""
-    together = np.ones((4, 1))
+    task = task_of(chain, evidence, readings, peak.flux_counts, shared=True)
 
     def value(s):
-        moved, flux = peak.state.moved(s[:10]), peak.flux_counts + s[10]
-        return _Point.of(chain, evidence, readings, moved, flux, together).value / 2
+        return point_at(task, place_of(peak.state.moved(s[:10]), peak.flux_counts + s[10])).value / 2
 
-    information = _Point.of(chain, evidence, readings, peak.state, peak.flux_counts, together).information
+    information = point_at(task, place_of(peak.state, peak.flux_counts)).information
     proposals = rng.multivariate_normal(np.zeros(11), 0.35 * np.linalg.inv(information), count)
     here, height, walked = np.zeros(11), value(np.zeros(11)), []
     for step, luck in zip(proposals, np.log(rng.random(count)), strict=True):
