@@ -85,7 +85,8 @@ def point_at(task: Task, place: Place) -> Point:
         )
         gain += more
         for m in range(n):
-            by_flux[c, m] = shown.gain[c, m] * task.groups[m]
+            for k in range(by_flux.shape[2]):
+                by_flux[c, m, k] = shown.gain[c, m] * task.groups[m, k]
     H, g = joined(J, by_flux, information, score)
     chi2 = add_readings(task.measured, rotation, position_m, angles, H, g)
     return Point(gain - chi2, g, H, J, information, score, gain, chi2)
@@ -99,7 +100,9 @@ def climbed(task: Task, start: Place) -> tuple[Place, Point, int, bool]:
     while steps < _MAX_STEPS and not converged:
         steps += 1
         step = _step(at, damping)
-        gain_ahead = (at.gradient * step).sum()
+        gain_ahead = 0.0
+        for s in range(len(step)):
+            gain_ahead += at.gradient[s] * step[s]
         _limit(step, at.by_state)
         next_place = _stepped(task, place, step)
         there = point_at(task, next_place)
@@ -134,13 +137,18 @@ def _limit(step: Array, by_state: Array) -> None:
                 along_v += by_state[c, m, 1, s] * step[s]
             farthest = max(farthest, math.hypot(along_u, along_v))
     if farthest > _MAX_STEP_PX:
-        step *= _MAX_STEP_PX / farthest
+        for s in range(len(step)):
+            step[s] *= _MAX_STEP_PX / farthest
 
 
 @compiled
 def _stepped(task: Task, place: Place, step: Array) -> Place:
     rotation, position_m = moved(place.rotation, place.position_m, step)
-    flux = place.flux_counts + (task.groups * step[STATE_SIZE:]).sum(axis=1)
-    if (flux < 0).any() or not flux.any():
-        flux = np.maximum(flux, _DIMMEST * place.flux_counts)
+    flux = place.flux_counts.copy()
+    for m in range(len(flux)):
+        for k in range(task.groups.shape[1]):
+            flux[m] += task.groups[m, k] * step[STATE_SIZE + k]
+    if min(flux) < 0 or max(flux) == 0:
+        for m in range(len(flux)):
+            flux[m] = max(flux[m], _DIMMEST * place.flux_counts[m])
     return Place(rotation, position_m, place.angles_rad + step[6:STATE_SIZE], flux)

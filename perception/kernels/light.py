@@ -100,8 +100,10 @@ def joined(J: Array, light_by_flux: Array, information: Array, score: Array) -> 
     H, g, G, weighted = np.zeros((size, size)), np.zeros(size), np.zeros((3, size)), np.empty((3, size))
     for c in range(cameras):
         for m in range(n):
-            G[0, states:] = light_by_flux[c, m]
-            G[1:, :states] = J[c, m]
+            for s in range(states):
+                G[1, s], G[2, s] = J[c, m, 0, s], J[c, m, 1, s]
+            for s in range(states, size):
+                G[0, s] = light_by_flux[c, m, s - states]
             for a in range(3):
                 for s in range(size):
                     weighted[a, s] = 0.0

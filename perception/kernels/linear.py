@@ -44,8 +44,9 @@ def inverted(A: Array, size: int) -> Array:
     L, out, column = A.copy(), np.empty((size, size)), np.empty(len(A))
     factor(L)
     for j in range(size):
-        column[:] = 0.0
-        column[j] = 1.0
+        for i in range(len(A)):
+            column[i] = 1.0 if i == j else 0.0
         solve(L, column)
-        out[:, j] = column[:size]
-    return (out + out.T) / 2
+        for i in range(j, size):
+            out[i, j] = out[j, i] = column[i]
+    return out
