@@ -1,6 +1,6 @@
 """What disturbs the localisation by LEDs, one thing at a time: detected, rightly refused, or false.
 
-    python -m benchmarks.disturbances [--trials 300] [--ranges 1.6 5 10 20 | --all] [--only NAME ...] [--jobs N]
+    python -m benchmarks.disturbances [--trials 300] [--ranges 1.6 5 10 20 | --all] [--only NAME] [--jobs N]
 
 A row a disturbance and range, with the on/off pairs of `benchmarks.perception`. Holds where 95 % are
 detected, or each of the others but 5 % is refused with a reason that names what is wrong or is the truth
@@ -77,7 +77,7 @@ class Row:
         refused = self.trials - self.detected
         line = (
             f"{self.name:16} {self.range_m:6.1f} {self.pairs:6d} {self.detected / self.trials:9.3f}"
-            f" {refused / self.trials:8.3f} {self.right / max(refused, 1):8.3f} {self.false / self.trials:6.3f}"
+            f" {refused / self.trials:8.3f} {self.right / self.trials:8.3f} {self.false / self.trials:6.3f}"
             f" {self.nees:6.2f}  {'yes' if self.holds else 'NO'}"
         )
         return "\n".join([line, *(f"{'':18}{count:4d} x {why}" for why, count in self.reasons)])

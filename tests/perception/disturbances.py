@@ -70,8 +70,8 @@ class LedSwapped(Disturbance):
 
 
 class FalseReflection(Disturbance):
-    """One to five glints around the plate, 0.3 to 2 times as bright as a marker, most of them blinking with an
-    LED, some steady; most at one place in space, some elsewhere in each camera, as mirror images are."""
+    """One to five glints around the plate, 0.3 to 2 times as bright as a marker, most of them blinking with
+    an LED, some steady; most at one place in space, some elsewhere in each camera, as mirror images are."""
 
     def begin(self, stage: Stage, rng: np.random.Generator) -> None:
         self._glints = [self._draw(stage, rng) for _ in range(rng.integers(1, 6))]
@@ -107,7 +107,7 @@ class Glare(Disturbance):
         v, u = self.place[camera] * ground_e.shape
         rows, columns = (np.arange(n, dtype=np.float32) for n in ground_e.shape)
         apart = np.hypot((rows - v)[:, None], (columns - u)[None])
-        patch = 4 * _FULL_WELL_E / (1 + np.exp(2 * (apart - self.radius_px)))
+        patch = 4 * _FULL_WELL_E / (1 + np.exp(np.minimum(2 * (apart - self.radius_px), 50)))
         bloom = self.bloom_e * (np.abs(columns - u) < self.radius_px)
         return (ground_e + patch + bloom).astype(np.float32)
 

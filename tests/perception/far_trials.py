@@ -15,6 +15,7 @@ from executive.rig import RigCalibration
 from executive.types import HeadReading, Images, PoseEstimate, Shot, Source, Window
 from perception.body import Transform
 from perception.chain import Chain, ChainState
+from perception.choice import Rejection, noted
 from perception.codes import coded_sequence, lit
 from perception.difference import led_sequence, pair_weights
 from perception.exposure import SNR_WANTED, filter_snr_per_pair, view_of
@@ -22,7 +23,7 @@ from perception.fisher import centre_bound, pose_bound
 from perception.follow_up import pointing_at
 from perception.look import look_at
 from perception.pile import Pile
-from perception.plausibility import Rejection, choose
+from perception.plausibility import choose
 from perception.pose import Fix, roll_pitch
 from perception.prediction import Expectation, expect
 from perception.psf import marker_spread
@@ -183,7 +184,7 @@ def _singly(setting, cameras, stage, rng):
         return Rejection(look.problem, 0), watch.elapsed_s()
     prior = setting.expectation.prior
     found = choose(chain, look.candidates, said.head_rad, said.joints_rad, setting.tilt_rad, prior)
-    return found, watch.elapsed_s()
+    return noted(found, look.note), watch.elapsed_s()
 
 
 def _images(setting, stage, part, counts) -> Images:
