@@ -26,7 +26,7 @@ from perception.markers import filter_snr
 from perception.pose import Fix, Readings, Sighting, chi2_limit
 from perception.prediction import Expectation
 from perception.psf import Spread
-from perception.search import FilterImages, Hypothesis, search
+from perception.search import REGION_SIGMAS, FilterImages, Hypothesis, search
 
 __all__ = ["FALSE_ALARM_RATE", "JointFix", "joint_fix", "nothing", "relative_gain"]
 
@@ -40,6 +40,7 @@ _RIVAL = 6.0  # twice the difference in log likelihood below which another pose 
 _APART_PX = 1.0  # poses whose markers are farther apart than this are different explanations
 _LEAST_MARKER_SNR = 2.5  # of one marker in both cameras, to count as shining once the pose is known
 _LEAST_MARKERS = 2
+_PLACE_AND_HEADING = 3  # directions of the region searched
 _NOISE_RATE = 0.05  # of noise alone, in the search for what the markers that do not shine at a pose may show
 _SURE = 3.0  # above that, the joint SNR at which markers as bright would hardly stay below it
 
@@ -106,7 +107,14 @@ class _Scene:
         ]
         starts, volume = search(self.chain, filtered, self.expectation, self.spread, self.widen, _STARTS)
         unit = _flux_unit(images, self.spread)
-        return _climb_all(self.chain, self.evidence(images), self.readings, starts, unit), volume
+        likely = _climb_all(self.chain, self.evidence(images), self.readings, starts, unit)
+        return [one for one in likely if self.searched(one)], volume
+
+    def searched(self, one: Likely) -> bool:
+        """Whether a climb ended about where it was allowed to begin: of chance finds elsewhere the threshold
+        knows nothing."""
+        reach = REGION_SIGMAS * max(self.widen, 1.0)
+        return self.expectation.distance2(one.state.site_body) <= _PLACE_AND_HEADING * reach**2
 
     def threshold(self, volume: float, rate: float) -> float:
         state = self.expectation.state
