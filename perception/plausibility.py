@@ -27,6 +27,7 @@ from perception.choice import (
     brightness_misfit,
     faces_cameras,
 )
+from perception.identity import exchanges
 from perception.markers import Detection
 from perception.monocular import choose_alone
 from perception.pose import Prior, Sighting, chi2_limit, estimate, guess_body
@@ -102,26 +103,15 @@ def _swapped(around: Circumstances, candidates: Candidates) -> Choice | None:
         return None
     found: list[tuple[float, Choice]] = []
     expected = ChainState(around.prior.site_body, around.head_rad, around.joints_rad)
-    for couples in _exchanges(around.markers):
-        order = list(range(around.markers))
-        for a, b in couples:
-            order[a], order[b] = b, a
+    for order, said in exchanges(around.markers):
         pairs = _pairs(around, [[camera[m] for m in order] for camera in candidates])
         choice = _best_of(around, pairs, around.markers, 0)
         if isinstance(choice, Choice):
-            said = " and ".join(f"{a} with {b}" for a, b in couples)
             distance2 = Expectation(expected, around.prior.covariance).distance2(choice.fix.state.site_body)
-            found.append((distance2, replace(choice, note=f"LEDs swapped: {said}")))
+            found.append((distance2, replace(choice, note=said)))
     found.sort(key=lambda f: f[0])
     alone = len(found) == 1 or (len(found) > 1 and found[1][0] - found[0][0] > _LEAD)
     return found[0][1] if alone else None
-
-
-def _exchanges(markers: int) -> Iterator[tuple[tuple[int, int], ...]]:
-    """One couple of LEDs, then two."""
-    couples = list(itertools.combinations(range(markers), 2))
-    yield from ((couple,) for couple in couples)
-    yield from (both for both in itertools.combinations(couples, 2) if not set(both[0]) & set(both[1]))
 
 
 def _pairs(around: Circumstances, candidates: Candidates) -> list[list[StereoPoint]]:
