@@ -91,8 +91,8 @@ def most_likely(
 ) -> Likely | None:
     """Climb the likelihood from `start`; `shared` ties all markers to one flux. None if no light is found."""
     flux = plain(np.where(flux_counts > 0, flux_counts, 0.0))
-    task = _task(chain, evidence, readings, _groups(flux, shared))
-    place, at, steps, converged = climbed(task, _place(start, flux))
+    task = task_of(chain, evidence, readings, flux, shared)
+    place, at, steps, converged = climbed(task, place_of(start, flux))
     if not np.isfinite(at.value) or not place.flux_counts.any():
         return None
     pan, tilt, arm, cabin = place.angles_rad.tolist()
@@ -102,51 +102,35 @@ def most_likely(
     return Likely(state, place.flux_counts, covariance, snr, local, at.readings_chi2, steps, converged)
 
 
-def observed_covariance(
+def observed_information(
     chain: Chain, evidence: Evidence, readings: Readings, at: Likely, shared: bool
 ) -> Array:
-    """Covariance (6, 6) of the body pose from the likelihood's own curvature, by central differences.
+    """Information (10 + fluxes, square) from the likelihood's own curvature, by central differences.
 
     Of faint light each image has its luck; the curvature knows it, the expected information does not. That
     one is taken where the likelihood is not curved downwards in all directions.
     """
-    groups = _groups(at.flux_counts, shared)
-    task = _task(chain, evidence, readings, groups)
+    task = task_of(chain, evidence, readings, at.flux_counts, shared)
 
     def gradient(step: Array) -> Array:
-        flux = at.flux_counts + groups @ step[STATE_SIZE:]
-        return point_at(task, _place(at.state.moved(step[:STATE_SIZE]), flux)).gradient
+        flux = at.flux_counts + task.groups @ step[STATE_SIZE:]
+        return point_at(task, place_of(at.state.moved(step[:STATE_SIZE]), flux)).gradient
 
-    expected = point_at(task, _place(at.state, at.flux_counts)).information
+    expected = point_at(task, place_of(at.state, at.flux_counts)).information
     steps = np.diag(_PROBE_SIGMAS / np.sqrt(np.diag(expected)))
     H = np.stack([(gradient(-s) - gradient(s)) / (2 * s.max()) for s in steps])
     H = (H + H.T) / 2
-    curved = bool(np.linalg.eigvalsh(H)[0] > 0)
-    information = _with_tails(H if curved else expected, readings, at)
-    covariance: Array = np.asarray(np.linalg.inv(information)[:6, :6], dtype=np.float64)
-    return (covariance + covariance.T) / 2
+    return H if np.linalg.eigvalsh(H)[0] > 0 else expected
 
 
-def _with_tails(information: Array, readings: Readings, at: Likely) -> Array:
-    """The information (n, n) whose inverse is the covariance of a likelihood with the tails that light has.
-
-    Twice the log likelihood falls off as snr^2 exp(-q), q quadratic in the d directions that the images
-    determine, not as snr^2 (1 - q). To first order in 1 / snr^2 the covariance of such a peak is that of its
-    curvature times 1 + (d + 2) / snr^2.
-    """
-    read = np.zeros_like(information)
-    readings.add_to(at.state, read[:STATE_SIZE, :STATE_SIZE], np.zeros(STATE_SIZE))
-    images = information - read
-    fluxes = len(information) - STATE_SIZE
-    directions = float(np.trace(np.linalg.solve(information, images))) - fluxes
-    return np.asarray(read + images / (1 + (directions + 2) / at.snr**2), dtype=np.float64)
+def task_of(chain: Chain, evidence: Evidence, readings: Readings, flux_counts: Array, shared: bool) -> Task:
+    """Everything that a state is held against; a marker without flux stays dark."""
+    groups = plain(_groups(flux_counts, shared))
+    return Task(*chain.kernel_rig, readings.measured, evidence.shown, groups)
 
 
-def _task(chain: Chain, evidence: Evidence, readings: Readings, groups: Array) -> Task:
-    return Task(*chain.kernel_rig, readings.measured, evidence.shown, plain(groups))
-
-
-def _place(state: ChainState, flux_counts: Array) -> Place:
+def place_of(state: ChainState, flux_counts: Array) -> Place:
+    """A state with the markers' fluxes (n,) for the kernels."""
     body = state.site_body
     return Place(plain(body.rotation), plain(body.position_m), state.angles_rad, plain(flux_counts))
 

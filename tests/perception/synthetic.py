@@ -33,14 +33,16 @@ def blur_sigma_px(range_m: float) -> float:
     return float(np.hypot(0.5, 5.47 * abs(1 / range_m - 1 / 20.0) / 4))
 
 
-def spot(shape: tuple[int, int], u: float, v: float, range_m: float, grid: int = 9) -> np.ndarray:
+def spot(
+    shape: tuple[int, int], u: float, v: float, range_m: float, grid: int = 9, widen: float = 1.0
+) -> np.ndarray:
     """Shares of light of one marker in an image of this shape; sums to 1 inside a large one."""
     side = 2500.0 * 0.003 / range_m
     steps = (np.arange(grid) + 0.5) / grid - 0.5
 
     def line(n: int, centre: float) -> np.ndarray:
         edges = (np.arange(n + 1) - 0.5)[:, None] - (centre + side * steps)[None]
-        cumulative = 0.5 * (1 + erf(edges / (np.sqrt(2) * blur_sigma_px(range_m))))
+        cumulative = 0.5 * (1 + erf(edges / (np.sqrt(2) * widen * blur_sigma_px(range_m))))
         return np.diff(cumulative, axis=0).mean(axis=1)
 
     return np.outer(line(shape[0], v), line(shape[1], u))
