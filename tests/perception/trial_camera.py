@@ -14,6 +14,7 @@ import numpy as np
 from executive.types import Window
 from perception.codes import lit
 from perception.psf import marker_spread
+from tests.perception.sensor.noise import add_noise
 from tests.perception.synthetic import (
     BITS,
     GAIN_E,
@@ -166,17 +167,14 @@ class TrialCamera:
         """Frames of a part of the sequence [counts]."""
         leds = self.stage.leds
         first, last, _ = part.indices(len(leds))
-        frames = rng.standard_normal((last - first, *self._inner_e.shape), dtype=np.float32)
+        counts = np.empty((last - first, *self._inner_e.shape), dtype=np.uint16)
         for k in range(first, last):
             expected = self._ground_in(k, k / len(leds), rng)
             shift = self.disturbance.shift_px(k)
             for spot_ in self.spots:
                 spot_.add_to(expected, k, shift)
-            frames[k - first] *= np.sqrt(expected + READ_E**2)
-            frames[k - first] += expected
-        frames /= np.float32(GAIN_E)
-        np.rint(frames, out=frames)
-        counts = np.clip(frames, 0, FULL, out=frames).astype(np.uint16)
+            light = np.ascontiguousarray(expected, dtype=np.float32)
+            add_noise(rng, light, READ_E, GAIN_E, float(FULL), counts[k - first])
         return self.disturbance.delivered(self.camera, first, counts)
 
     def _ground_in(self, frame: int, progress: float, rng: np.random.Generator) -> np.ndarray:
