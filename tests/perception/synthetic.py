@@ -18,7 +18,7 @@ from perception.body import Transform
 from perception.chain import Chain, ChainState
 from perception.follow_up import pointing_at
 from perception.rotation import exp_map
-from tests.perception.sensor.noise import add_noise
+from tests.perception.sensor.noise import with_noise
 
 FULL_WELL_E, BACKGROUND, READ_E, BITS = 160_000.0, 0.40, 40.0, 10
 GAIN_E = FULL_WELL_E / (2**BITS - 1)
@@ -64,9 +64,8 @@ def background_e(rng: np.random.Generator, shape: tuple[int, int], texture: floa
 
 def expose(rng: np.random.Generator, expected_e: np.ndarray) -> np.ndarray:
     """A frame (h, w) of what is expected [e-], with a real sensor's noise [counts]."""
-    counts = np.empty(expected_e.shape, dtype=np.uint16)
-    add_noise(rng, np.ascontiguousarray(expected_e), READ_E, GAIN_E, 2.0**BITS - 1, counts)
-    return counts
+    stack = np.ascontiguousarray(expected_e[None])
+    return with_noise(rng, stack, READ_E, GAIN_E, 2.0**BITS - 1)[0]
 
 
 def sequence(

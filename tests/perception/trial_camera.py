@@ -14,7 +14,7 @@ import numpy as np
 from executive.types import Window
 from perception.codes import lit
 from perception.psf import marker_spread
-from tests.perception.sensor.noise import add_noise
+from tests.perception.sensor.noise import with_noise
 from tests.perception.synthetic import (
     BITS,
     GAIN_E,
@@ -167,14 +167,13 @@ class TrialCamera:
         """Frames of a part of the sequence [counts]."""
         leds = self.stage.leds
         first, last, _ = part.indices(len(leds))
-        counts = np.empty((last - first, *self._inner_e.shape), dtype=np.uint16)
-        for k in range(first, last):
-            expected = self._ground_in(k, k / len(leds), rng)
+        expected = np.empty((last - first, *self._inner_e.shape), dtype=np.float32)
+        for k, light in enumerate(expected, first):
+            light[:] = self._ground_in(k, k / len(leds), rng)
             shift = self.disturbance.shift_px(k)
             for spot_ in self.spots:
-                spot_.add_to(expected, k, shift)
-            light = np.ascontiguousarray(expected, dtype=np.float32)
-            add_noise(rng, light, READ_E, GAIN_E, float(FULL), counts[k - first])
+                spot_.add_to(light, k, shift)
+        counts = with_noise(rng, expected, READ_E, GAIN_E, float(FULL))
         return self.disturbance.delivered(self.camera, first, counts)
 
     def _ground_in(self, frame: int, progress: float, rng: np.random.Generator) -> np.ndarray:
@@ -188,7 +187,7 @@ class TrialCamera:
             ground *= 1 + n.light * np.sin(2 * np.pi * progress)
         if self.disturbance.relit:
             return self.disturbance.light(self.camera, frame, ground)
-        return ground.copy()
+        return ground
 
 
 @dataclass
