@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from executive.clock import Clock
 from executive.ports import Action, Devices, LocaliseRequest
 from executive.rig import RigCalibration
@@ -26,16 +28,19 @@ from executive.types import (
 from executive.types import View as Seen
 from perception.aim import Aim
 from perception.chain import Chain
+from perception.empty_views import EmptyViews
 from perception.exposure import View, view_of
 from perception.head_watch import HeadWatch, surprising
 from perception.joint import JointFix
 from perception.ladder import FULL_FRAMES, LADDER
 from perception.localisation import Localisation, empty
+from perception.outlines import Found, Outlines
 from perception.plausibility import Choice, Rejection
 from perception.pose import Fix
 from perception.prediction import Expectation
 from perception.rotation import quat_from_matrix
 from perception.routine import Routine, Steps
+from perception.scouting import Scout
 from perception.sight import Eyes, Sight
 from perception.tendency import Tendency
 
@@ -50,6 +55,9 @@ class LedStereoLocalizer:
         self._eyes = Eyes(devices, rig, clock)
         self._tendency = Tendency(devices, self._chain, clock, self._aim, self._eyes)
         self._watch = HeadWatch(devices, self._chain, clock)
+        views = EmptyViews(self._chain)
+        self._scout = Scout(devices, self._chain, clock, self._aim, views)
+        self._outlines = Outlines(devices, self._chain, clock, self._aim, views)
         self.last: Localisation | None = None
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
@@ -89,6 +97,7 @@ class LedStereoLocalizer:
             if wrong is not None:
                 return Outcome(Reason.MISALIGNED, wrong)
         self._watch.note, looked = "", self._watch.note
+        yield from self._scout.look_ahead(request, deadline)
         outcome = yield from self._fix(request, deadline)
         if not looked and _doubtful(outcome, request.predicted):
             wrong = yield from self._watch.look(request.predicted, deadline)
@@ -100,8 +109,11 @@ class LedStereoLocalizer:
     # -- active markers, at rest
 
     def _fix(self, request: LocaliseRequest, deadline: float) -> Steps[Outcome[PoseEstimate]]:
-        """Climb the ladder until a plausible fix, the budget's end, or the ladder's."""
-        why, retaken, rung = "no time for a single look", False, 0
+        """Climb the ladder until a plausible fix, the budget's end, or the ladder's.
+
+        Where the first rung shows no marker, the outline is asked before the search goes on.
+        """
+        why, outline, retaken, rung = "no time for a single look", "", False, 0
         while rung < len(LADDER):
             turned = yield from self._aim.turn_to(request.predicted, LADDER[rung].offset_rad, deadline)
             if turned is not None:
@@ -119,6 +131,11 @@ class LedStereoLocalizer:
                 return Outcome(Reason.DONE, _cost(sight), self._estimate(sight.data, answer))
             reason, why = problem or (Reason.NOT_SEEN, "")
             cut_off = isinstance(answer, Rejection) and rung < FULL_FRAMES  # a window may cut markers off
+            if reason is Reason.NOT_SEEN and not outline:
+                found = yield from self._outlines.find(request.predicted, deadline)
+                if isinstance(found, Found):
+                    return self._by_outline(request.quality, found, why)
+                outline = found
             if reason is Reason.NOT_SEEN or (reason is Reason.IMPLAUSIBLE and cut_off):
                 rung += 1
             elif retaken:
@@ -126,7 +143,14 @@ class LedStereoLocalizer:
                 return Outcome(reason, why, value)
             else:
                 retaken = True
-        return self._not_seen(request, why)
+        return self._not_seen(request, "; ".join(filter(None, (why, outline))))
+
+    def _by_outline(self, quality: Quality, found: Found, why: str) -> Outcome[PoseEstimate]:
+        self.last = empty(found.data.time_s, quality, len(self._chain.markers_plc_m), found.data, 0, "")
+        if isinstance(found.data, Images):
+            left, right = (counts.mean(axis=0, dtype=np.float32) for counts in found.data.counts)
+            self.last = replace(self.last, reference=(left, right))
+        return Outcome(Reason.DONE, f"{found.note}; as {why}", found.pose)
 
     def _judge(self, expectation: Expectation, sight: Sight) -> tuple[Reason, str] | None:
         """What speaks against this sight; None if nothing does."""
@@ -136,7 +160,7 @@ class LedStereoLocalizer:
             problem = Reason.UNSTABLE_IMAGES, sight.problem
         elif isinstance(answer, Rejection):
             problem = (Reason.NOT_SEEN if answer.seen < 2 else Reason.IMPLAUSIBLE), answer.why
-        elif misfit := expectation.misfit(answer.fix):
+        elif misfit := expectation.misfit(answer.fix.state.site_body, answer.fix.covariance):
             problem = Reason.IMPLAUSIBLE, misfit
         if problem is not None and self.last is not None:
             self.last = replace(self.last, why=problem[1])

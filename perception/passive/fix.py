@@ -11,14 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from executive.types import Array, Window
 from perception.chain import Chain
 from perception.checks import as_finite
 from perception.passive.alignment import SIZE, Start
 from perception.passive.background import lay_under
-from perception.passive.binning import binned, binned_rig, binning_for
+from perception.passive.binning import Frames, binned, binned_rig, binning_for
 from perception.passive.drawing import Artist
 from perception.passive.judging import Ground, PassiveFix, PassiveRefusal, judged
 from perception.passive.matching import Scene
@@ -53,8 +52,8 @@ def empty_window(chain: Chain, expectation: Expectation) -> tuple[Window, Window
 
 def passive_fix(
     chain: Chain,
-    images: Sequence[NDArray[np.uint16]],
-    backgrounds: Sequence[NDArray[np.uint16]],
+    images: Sequence[Frames],
+    backgrounds: Sequence[Frames],
     windows: tuple[Window, Window],
     expectation: Expectation,
     ground: Ground,
@@ -88,7 +87,7 @@ def passive_fix(
     return judged(coarse, best.aligned, best.scenes, best.details, ground)
 
 
-def _checked(name: str, frames: NDArray[np.uint16], window: Window) -> NDArray[np.uint16]:
+def _checked(name: str, frames: Frames, window: Window) -> Frames:
     as_finite(name, frames, (None, window.height, window.width))
     return np.asarray(frames)
 

@@ -163,7 +163,7 @@ def run_trial(
     found, weights, seconds = way(setting, cameras, windows, leds, rng)
     limit = bound(setting, weights, GROUND_SIGMA_M if joint else np.inf)
     fix = getattr(found, "fix", None)
-    why = found.why if fix is None else setting.expectation.misfit(fix)
+    why = found.why if fix is None else setting.expectation.misfit(fix.state.site_body, fix.covariance)
     if why:
         return Trial(None, None, limit, seconds, why)
     return Trial(_error(setting.said.site_body, fix), fix.covariance, limit, seconds, "")

@@ -11,7 +11,6 @@ import pytest
 from executive.types import Centres, HeadReading, Shot, Window
 from sim_pybullet.error_model import FLOOR_PX, centre_error
 from sim_pybullet.geometric import CENTROID_SIGMA_PX, CentreDeveloper
-from sim_pybullet.ground_marks import GroundMarks
 from sim_pybullet.leds import MarkerOptics, Spot, add_spot
 from sim_pybullet.radiometry import Exposure, calibrated_light, line_spread, spread_sigma_px
 from sim_pybullet.raycast import HeightField
@@ -25,7 +24,7 @@ _HEAD = HeadReading(0.0, 0.0, 0.0, False)
 def _developer(seed: int = 1) -> CentreDeveloper:
     field, rng = HeightField(flat_ground()), np.random.default_rng(seed)
     optics = MarkerOptics(RIG, calibrated_light(RIG), field)
-    return CentreDeveloper(optics, _EXPOSURE, GroundMarks(field, rng.spawn(1)[0]), rng)
+    return CentreDeveloper(optics, _EXPOSURE, field, rng)
 
 
 def _sequence(pairs: int) -> tuple[int, ...]:
