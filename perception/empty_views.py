@@ -6,6 +6,7 @@ the view was taken. Far off, a rover hides several metres of ground behind it; n
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -18,21 +19,22 @@ from perception.chain import Chain
 from perception.passive import empty_window
 from perception.prediction import Expectation
 
-REACH_M = 0.25  # from the middle of the rover to its ends
-GHOST_M = 0.30  # likewise, with the near part of the shadow
+REACH_M = 0.19  # of the rover from its middle, whichever way it faces
+GHOST_M = 0.21  # likewise, with what its place may be off by
+_HEIGHT_M = 0.20  # of the cabin, a little raised
+_ROUND = np.array([(math.cos(a), math.sin(a), 0.0) for a in np.arange(8) * math.pi / 4])
 MOST = 12  # views of 4 MB
 _SIXTEENTHS = 16  # of a count, in which means of counts are kept
-_MIDDLE_M = np.array([0.0, 0.0, 0.10])  # of the rover over ground
 
 
 def boxes_px(chain: Chain, head_rad: Vec2, places_site_m: Array, reach_m: float) -> Array:
-    """Pixels (2, n, 4), first and last column and row as (left, top, right, bottom), that something takes
-    which reaches so far around a rover's middle at places (n, 3) on the ground; NaN where out of sight."""
-    middle = chain.site_ih(head_rad).inverse().apply(places_site_m + _MIDDLE_M)
-    range_m = np.linalg.norm(middle, axis=1)
-    half_px = (reach_m * chain.model.focal_px[:, None] / range_m)[..., None]
-    uv = chain.model.project(middle)
-    return np.concatenate([uv - half_px, uv + half_px], axis=-1)
+    """Pixels (2, n, 4), first and last column and row as (left, top, right, bottom), that a rover takes
+    which reaches so far around places (n, 3) on the ground; NaN where out of sight."""
+    rim = np.concatenate([reach_m * _ROUND, reach_m * _ROUND + [0.0, 0.0, _HEIGHT_M]])
+    points = (places_site_m[:, None] + rim).reshape(-1, 3)
+    uv = chain.model.project(chain.site_ih(head_rad).inverse().apply(points))
+    uv = uv.reshape(2, len(places_site_m), len(rim), 2)
+    return np.concatenate([uv.min(axis=2), uv.max(axis=2)], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)

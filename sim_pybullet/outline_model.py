@@ -18,7 +18,7 @@ FOUND = 0.97
 """Share of outlines that are not refused."""
 LEAST_LIGHT, MOST_BLUR_PX = 0.2, 1.0
 """Of the light that the exposure was set for; of a dusty lens."""
-_REACH_M = 0.17  # of the rover, from its middle
+_FOOTPRINT_BODY_M = np.array([(x, y, 0.0) for x in (-0.17, 0.17) for y in (-0.08, 0.08)])
 
 
 Views = tuple[View, View]
@@ -41,7 +41,7 @@ class Outline:
         range_m, sigma_px = zip(*MEASURED, strict=True)
         sigma = float(np.interp(np.linalg.norm(body - views[0].position_site_m), range_m, sigma_px))
         uv_px = np.stack([view.project(places)[0] for view in views])
-        whole = all(_whole(body, view, window) for view, window in zip(views, windows, strict=True))
+        whole = all(_whole(scene, view, window) for view, window in zip(views, windows, strict=True))
         return (uv_px + sigma * noise if found and whole and clear(scene) else uv_px * np.nan), sigma
 
 
@@ -52,9 +52,9 @@ def clear(scene: SceneState) -> bool:
     return seeing.light >= LEAST_LIGHT and not blurred and not seeing.screens
 
 
-def _whole(body_site_m: Array, view: View, window: Window) -> bool:
-    """Whether all of the rover is in the window."""
-    middle, depth_m = view.project(body_site_m)
-    half = view.camera.focal_px * _REACH_M / max(float(depth_m), _REACH_M)
+def _whole(scene: SceneState, view: View, window: Window) -> bool:
+    """Whether the rover's footprint is in the window; what stands on it needs no more room."""
+    T = scene.T_site_body
+    corners_px, _ = view.project(_FOOTPRINT_BODY_M @ T[:3, :3].T + T[:3, 3])
     low, size = np.array([window.u, window.v]), np.array([window.width, window.height])
-    return bool((middle - half >= low).all() and (middle + half <= low + size - 1).all())
+    return bool(((corners_px >= low) & (corners_px <= low + size - 1)).all())
