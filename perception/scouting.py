@@ -21,6 +21,9 @@ FRAMES = 8
 UNLIT = (0,) * FRAMES
 AHEAD_M = 4.0
 _SPACING_M = 0.15
+_AROUND_M = (0.4, 0.8)  # the end of a segment
+_ROUND = 8
+_BEARINGS_RAD = np.arange(_ROUND) * 2 * math.pi / _ROUND
 _LOOK_S = 120.0  # left of a budget, it does for scouting and still for a fix
 _AGAIN_S = 600.0  # after a look that failed
 _MOST_AT_ONCE = 4  # looks, some eight seconds each
@@ -87,9 +90,19 @@ class Scout:
 
 
 def places_ahead(rover: PoseEstimate, segment: Segment) -> Array:
-    """Places (n, 3) in site from the rover to the segment's end, on ground as high as here [m]."""
+    """Places (n, 3) in site from the rover to the segment's end and around that, whichever way it goes on,
+    on ground as high as here [m]."""
     way = segment.offset(rover.x_m, rover.y_m)
-    along_m = np.append(np.arange(0.0, min(way.remaining_m, AHEAD_M), _SPACING_M), way.remaining_m)
-    ahead = np.array([math.cos(way.bearing_to_end_rad), math.sin(way.bearing_to_end_rad), 0.0])
-    places: Array = np.array(rover.position_site_m) + along_m[:, None] * ahead
+    length_m = min(way.remaining_m, AHEAD_M)
+    along_m = np.append(np.arange(0.0, length_m, _SPACING_M), length_m)
+    bearing_rad = np.full(len(along_m), way.bearing_to_end_rad)
+    line = _polar(along_m, bearing_rad)
+    around = np.concatenate([_polar(np.full(_ROUND, r), _BEARINGS_RAD) for r in _AROUND_M])
+    places: Array = np.array(rover.position_site_m) + np.concatenate([line, line[-1] + around])
     return places
+
+
+def _polar(distance_m: Array, bearing_rad: Array) -> Array:
+    """Horizontal vectors (n, 3) in site."""
+    level = np.stack([np.cos(bearing_rad), np.sin(bearing_rad), np.zeros(len(bearing_rad))], axis=1)
+    return np.asarray(distance_m[:, None] * level)
