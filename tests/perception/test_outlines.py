@@ -132,15 +132,14 @@ def test_an_uncertain_place_is_not_sought_by_outline():
 
 def test_an_outline_far_from_a_sure_prediction_is_refused():
     r, found = seen_ahead()
-    r.outline_off_px = 30.0
-    outcome = r.run(found.locate(ask(r, r.predicted(sigma_m=0.005))))
+    outcome = r.run(found.locate(ask(r, r.predicted((0.06, 0.06), sigma_m=0.005))))
     assert outcome.reason is Reason.NOT_SEEN
     assert "from the prediction" in outcome.detail
 
 
 def test_an_outline_out_of_sight_is_refused():
     r, found = seen_ahead()
-    r.outline_off_px = np.nan
+    r.outline = False
     outcome = r.run(found.locate(ask(r)))
     assert outcome.reason is Reason.NOT_SEEN
     assert "no outline shows" in outcome.detail
