@@ -21,7 +21,7 @@ from perception.chain import Chain
 from perception.empty_views import REACH_M, EmptyView, EmptyViews
 from perception.frames import check_frames, saturation
 from perception.look import look_at
-from perception.passive import Ground, PassiveFix, passive_fix
+from perception.passive import Ground, PassiveFix, PassiveRefusal, Sun, passive_fix
 from perception.plausibility import Rejection, choose
 from perception.prediction import Expectation
 from perception.rotation import quat_from_matrix
@@ -32,6 +32,7 @@ from perception.similarity import compare
 _MOST_OFF_M, _MOST_TURNED_RAD = 0.30, math.radians(15.0)  # as far as the outline is searched for
 _SIGMAS = 2.0
 _VIEWS = 2  # tried
+_SUN_KEPT_S = 1200.0  # it moves by five degrees; to find it takes as long as all the rest
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +57,7 @@ class Outlines:
     def __init__(self, devices: Devices, chain: Chain, clock: Clock, aim: Aim, views: EmptyViews) -> None:
         self._devices, self._chain, self._clock = devices, chain, clock
         self._aim, self._views = aim, views
+        self._sun: tuple[float, Sun] | None = None
 
     def find(self, predicted: PoseEstimate, deadline_s: float) -> Steps[Found | str]:
         """The rover's pose, or why it is not known."""
@@ -102,18 +104,27 @@ class Outlines:
         for name, counts in zip(("left", "right"), data.counts, strict=True):
             if problem := saturation(counts, sensor) or compare(counts, sensor.noise_counts).problem:
                 return f"{name} camera: {problem}"
-        height_m, sigma_m = expectation.state.site_body.position_m[2], math.sqrt(expectation.covariance[2, 2])
-        found = passive_fix(
-            self._chain,
-            data.counts,
-            view.counts(data.windows),
-            data.windows,
-            expectation,
-            Ground(float(height_m), sigma_m),
-        )
-        if not isinstance(found, PassiveFix):
+        found = self._fitted(data, view, expectation, self._last_sun())
+        if isinstance(found, PassiveRefusal) and self._last_sun():
+            found = self._fitted(data, view, expectation, None)
+        if isinstance(found, PassiveRefusal):
             return found.why
+        self._sun = (data.time_s, found.sun)
         return _Body(found.site_body, found.covariance, found.note)
+
+    def _fitted(
+        self, data: Images, view: EmptyView, expectation: Expectation, sun: Sun | None
+    ) -> PassiveFix | PassiveRefusal:
+        """Without a survey, the ground is held to be as high as predicted."""
+        height_m, sigma_m = expectation.state.site_body.position_m[2], math.sqrt(expectation.covariance[2, 2])
+        ground, empty = Ground(float(height_m), sigma_m), view.counts(data.windows)
+        return passive_fix(self._chain, data.counts, empty, data.windows, expectation, ground, sun)
+
+    def _last_sun(self) -> Sun | None:
+        """Where the shadow of the last fix showed the sun, if that is not long ago."""
+        if self._sun is None or self._clock.now_s > self._sun[0] + _SUN_KEPT_S:
+            return None
+        return self._sun[1]
 
     def _from_centres(self, data: Centres, expectation: Expectation) -> _Body | str:
         """The geometric tier tells an outline by where it puts the markers' places."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from perception.passive.alignment import SIZE, Start
 from perception.passive.background import lay_under
 from perception.passive.binning import Frames, binned, binned_rig, binning_for
 from perception.passive.drawing import Artist
-from perception.passive.judging import Ground, PassiveFix, PassiveRefusal, judged
+from perception.passive.judging import Ground, PassiveFix, PassiveRefusal, Sun, judged
 from perception.passive.matching import Scene
 from perception.passive.solids import rover_solids
 from perception.passive.ways import RIVAL, approached, chosen, followed
@@ -30,14 +30,6 @@ _LOOSE_M, _LOOSE_RAD = 1.0, math.radians(30.0)
 _MARGIN_M = 0.45  # around the markers: the rest of the rover, its shadow, and ground to know again
 _WIDEN = 0.25  # of the prediction's four sigmas: the margin does the rest
 _ANY_SUN_RAD = np.radians([(az, el) for az in range(-180, 180, 30) for el in (20.0, 35.0, 55.0)])
-
-
-@dataclass(frozen=True)
-class Sun:
-    """Where the sun stands, to a degree or so: azimuth from site x, left positive, and elevation [rad]."""
-
-    azimuth_rad: float
-    elevation_rad: float
 
 
 def empty_window(chain: Chain, expectation: Expectation) -> tuple[Window, Window]:

@@ -33,13 +33,23 @@ class Ground:
     sigma_m: float
 
 
+@dataclass(frozen=True)
+class Sun:
+    """Where the sun stands, to a degree or so: azimuth from site x, left positive, and elevation [rad]."""
+
+    azimuth_rad: float
+    elevation_rad: float
+
+
 @dataclass(frozen=True, eq=False)
 class PassiveFix:
-    """An accepted pose: body in site, covariance (6, 6) as in PoseEstimate, and what it rests on."""
+    """An accepted pose: body in site, covariance (6, 6) as in PoseEstimate, what it rests on, and the sun by
+    which the shadow was drawn."""
 
     site_body: Transform
     covariance: Array
     explained: float
+    sun: Sun
     note: str
 
 
@@ -76,7 +86,8 @@ def judged(
             f"{abs(off) / sigma:.1f} sigmas"
         )
     note = f"outline explains {explained:.0%} of what changed; ground {off * 1e3:+.1f} mm off the survey"
-    return PassiveFix(body, covariance, explained, note)
+    sun = Sun(*best.start.sun_rad.tolist())
+    return PassiveFix(body, covariance, explained, sun, note)
 
 
 def _explained(best: Aligned, scenes: Sequence[Scene]) -> float:

@@ -150,7 +150,7 @@ def test_an_outline_out_of_sight_is_refused():
 
 @pytest.fixture(scope="module")
 def setting():
-    return draw(12.0, Wrong.NOTHING, np.random.default_rng(3))
+    return draw(5.0, Wrong.NOTHING, np.random.default_rng(3))
 
 
 def in_images(setting, images=None):
