@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from perception.kernels.frames import equalised, mean_and_range
+from perception.kernels.lattice import add_pattern
 from perception.kernels.light import joined, local_fits
 from perception.psf import Spread
 from tests.perception.synthetic import spot
@@ -103,3 +104,14 @@ def test_frames_are_freed_of_what_a_basis_explains_by_least_squares():
     np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-4)
     np.testing.assert_allclose(rest, np.sqrt(np.mean(np.clip(left, -15, 15) ** 2, axis=1)), rtol=1e-5)
     np.testing.assert_allclose(frames, left.reshape(stack.shape) + mean, rtol=1e-5)
+
+
+def test_a_pattern_is_scored_by_the_images_at_its_places_and_by_nothing_outside():
+    snr = np.random.default_rng(4).standard_normal((2, 9, 11)).astype(np.float32)
+    uv = np.array([[103.6, 202.2], [109.2, 207.9]])
+    total = np.zeros((5, 7), dtype=np.float32)
+    add_pattern(total, snr, 100, 200, uv)
+    for j, i in np.ndindex(total.shape):
+        places = [(v - 200 + j - 2, u - 100 + i - 3) for u, v in ((104, 202), (109, 208))]
+        inside = [(m, v, u) for m, (v, u) in enumerate(places) if 0 <= v < 9 and 0 <= u < 11]
+        assert total[j, i] == pytest.approx(sum(snr[place] for place in inside), rel=1e-6)
