@@ -1,0 +1,131 @@
+"""Where the rover's outline lies best on what moved: each camera's pixels, both on one row.
+
+The lines drawn at an expected pose are a matched filter for moving edges. It does not mind a shadow that
+moves along, as its edges are not where the rover's are. The rover looks alike in both cameras, whose rows
+run alike, so the best row is one for both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from executive.types import Array
+from perception.body import Transform
+from perception.outline import Outline, Sketch
+from perception.steadying import Picture
+
+_ROW_SLACK = 1  # pixels by which the rows of both cameras may part
+_STEP_REACH_PX = 12  # twice what the rover drives between two frames
+
+
+@dataclass(frozen=True, eq=False)
+class Lie:
+    """How an outline lies: by how much it is off the expected place (u, v) [binned px], how alike lines and
+    moving edges are there (correlation), and the sketch."""
+
+    off_px: Array
+    alike: float
+    sketch: Sketch
+
+
+def lay_outlines(
+    outlines: list[Outline], edges: list[Picture], expected: Transform, reach_px: int, blur_px: float
+) -> list[Lie] | None:
+    """Lay the outlines on the edges (h, w) of the cameras that saw anything, within reach of a pose.
+
+    None where the rover is not in their pictures.
+    """
+    sketches, scores = [], []
+    for outline, edge in zip(outlines, edges, strict=True):
+        sketch = outline.sketch(expected, blur_px)
+        around = None if sketch is None else _cut(edge, sketch, reach_px)
+        if sketch is None or around is None:
+            return None
+        sketches.append(sketch)
+        scores.append(_scores(around, sketch))
+    row = _common_row(scores)
+    lies = []
+    for score, sketch, edge in zip(scores, sketches, edges, strict=True):
+        top = max(row - _ROW_SLACK, 0)
+        band = score[top : row + _ROW_SLACK + 1]
+        j, i = (int(x) for x in np.unravel_index(int(band.argmax()), band.shape))
+        off = np.array([i, top + j]) - reach_px
+        lies.append(Lie(off + _between(score, i, top + j), _alike(edge, sketch, off), sketch))
+    return lies
+
+
+def step_between(before: list[Picture], after: list[Picture], lies: list[Lie]) -> Array | None:
+    """By how much (u, v) [px] the outline came on from the edges `before` to those `after`.
+
+    The mean of all cameras, which see nearly the same step; None where it leaves their pictures.
+    """
+    was, now = (_peak_of_all(pictures, lies) for pictures in (before, after))
+    return None if was is None or now is None else now - was
+
+
+def _peak_of_all(pictures: list[Picture], lies: list[Lie]) -> Array | None:
+    """How far from where it lies the outline fits best, in all cameras together."""
+    total = np.zeros((2 * _STEP_REACH_PX + 1, 2 * _STEP_REACH_PX + 1), np.float32)
+    for picture, lie in zip(pictures, lies, strict=True):
+        there = replace(lie.sketch, corner=lie.sketch.corner + np.round(lie.off_px))
+        around = _cut(picture, there, _STEP_REACH_PX)
+        if around is None:
+            return None
+        total += _scores(around, there)
+    row, column = (int(x) for x in np.unravel_index(int(total.argmax()), total.shape))
+    return np.array([column, row]) - _STEP_REACH_PX + _between(total, column, row)
+
+
+def _scores(around: Picture, sketch: Sketch) -> Picture:
+    """Scores (2 reach + 1, 2 reach + 1) of the sketch moved over what surrounds it."""
+    pattern = sketch.lines - sketch.lines.mean()
+    pattern /= float(np.linalg.norm(pattern))
+    return np.asarray(cv2.matchTemplate(around, pattern, cv2.TM_CCORR), dtype=np.float32)
+
+
+def _common_row(scores: list[Picture]) -> int:
+    """The row with the best score of all cameras together, each allowed its slack."""
+    wide = np.ones((2 * _ROW_SLACK + 1, 1), np.uint8)
+    best = sum(cv2.dilate(score.max(axis=1)[:, None], wide) for score in scores)
+    return int(np.argmax(best))
+
+
+def _cut(edge: Picture, sketch: Sketch, reach_px: int) -> Picture | None:
+    """The picture where the sketch is, and `reach_px` around it; zero beyond its rim, None if all beyond."""
+    height, width = edge.shape
+    rows, columns = sketch.lines.shape
+    u, v = (int(x) - reach_px for x in sketch.corner)
+    left, right = max(u, 0), min(u + columns + 2 * reach_px, width)
+    top, bottom = max(v, 0), min(v + rows + 2 * reach_px, height)
+    if left >= right or top >= bottom:
+        return None
+    pad = (top - v, v + rows + 2 * reach_px - bottom, left - u, u + columns + 2 * reach_px - right)
+    inside = edge[top:bottom, left:right]
+    return np.asarray(cv2.copyMakeBorder(inside, *pad, cv2.BORDER_CONSTANT, value=0), dtype=np.float32)
+
+
+def _alike(edge: Picture, sketch: Sketch, off: Array) -> float:
+    """Correlation of the lines with the edges that they lie on."""
+    under = _cut(edge, replace(sketch, corner=sketch.corner + off), 0)
+    if under is None or under.std() == 0:
+        return 0.0
+    return float(np.corrcoef(under.ravel(), sketch.lines.ravel())[0, 1])
+
+
+def _between(score: Picture, column: int, row: int) -> Array:
+    """Where between pixels a paraboloid through the best and its neighbours peaks (u, v)."""
+    around = score[row - 1 : row + 2, column - 1 : column + 2].astype(np.float64)
+    if around.shape != (3, 3) or row == 0 or column == 0:
+        return np.zeros(2)
+    slope = np.array([around[1, 2] - around[1, 0], around[2, 1] - around[0, 1]]) / 2
+    twist = (around[2, 2] - around[2, 0] - around[0, 2] + around[0, 0]) / 4
+    bend_u = around[1, 2] - 2 * around[1, 1] + around[1, 0]
+    bend_v = around[2, 1] - 2 * around[1, 1] + around[0, 1]
+    H = np.array([[bend_u, twist], [twist, bend_v]])
+    if bend_u >= 0 or np.linalg.det(H) <= 0:
+        return np.zeros(2)
+    peak: Array = np.clip(-np.linalg.solve(H, slope), -1.0, 1.0)
+    return peak
