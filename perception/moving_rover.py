@@ -18,6 +18,7 @@ from executive.types import LEFT, RIGHT, Array, Images, Window
 from perception.body import Transform
 from perception.chain import Chain
 from perception.coarse_position import coarse_position
+from perception.frames import check_frames
 from perception.motion import LEAST_SIDE_PX, Fragments, motion_fragments
 from perception.outline import Outline
 from perception.outline_fit import Lie, lay_outlines, step_between
@@ -57,7 +58,9 @@ def moving_rover(chain: Chain, expectation: Expectation, images: Images, range_m
     """Find a rover of the expected attitude between a shot's first frame and its last.
 
     None where nothing moved that looks like it. The expected height counts only for one camera alone.
+    ValueError unless the frames are as ordered (perception.frames).
     """
+    check_frames(images, chain.rig.sensor)
     search = _Search.of(chain, expectation, images, range_m)
     found = _Found(expectation.state.site_body, np.eye(3), (), 0.0) if search.fragments else None
     for halvings, reach_px, blur_px in _PASSES:
@@ -158,8 +161,7 @@ class _Search:
         point_ih = head.inverse().apply(self._middle(found.site_body)[None])
         _, J = self.chain.model.project_with_jacobian(point_ih)
         by_site = J[list(self.fragments), 0].mean(axis=0) @ head.rotation.T / self.binning
-        fragments = list(self.fragments.values())
-        seen = step_between([f.before for f in fragments], [f.after for f in fragments], list(found.lies))
+        seen = step_between(list(self.fragments.values()), list(found.lies))
         weight = 0.0 if seen is None else _STEP_SIGMA_PX**-2
         H = np.diag([_UNKNOWN_M**-2, _UNKNOWN_M**-2, _CLIMB_SIGMA_M**-2]) + weight * by_site.T @ by_site
         P = np.linalg.inv(H)

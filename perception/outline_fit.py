@@ -11,13 +11,17 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from executive.types import Array
 from perception.body import Transform
+from perception.motion import Fragments, clearness, slope_of
 from perception.outline import Outline, Sketch
 from perception.steadying import Picture
 
 _ROW_SLACK = 1  # pixels by which the rows of both cameras may part
+_NEAR_PX = 9
+_STAYS_PX = 2.0
 _STEP_REACH_PX = 12  # twice what the rover drives between two frames
 
 
@@ -57,26 +61,27 @@ def lay_outlines(
     return lies
 
 
-def step_between(before: list[Picture], after: list[Picture], lies: list[Lie]) -> Array | None:
-    """By how much (u, v) [px] the outline came on from the edges `before` to those `after`.
+def step_between(fragments: list[Fragments], lies: list[Lie]) -> Array | None:
+    """By how much (u, v) [px] the outline came on between the two frames.
 
-    The mean of all cameras, which see nearly the same step; None where it leaves their pictures.
+    The mean of all cameras, which see nearly the same step; None where it leaves their pictures, or other
+    edges draw it away from where it lies. It is laid on all edges near what moved: what moves little changes
+    the same pixels in both frames, and these alone would say that it rests.
     """
-    was, now = (_peak_of_all(pictures, lies) for pictures in (before, after))
-    return None if was is None or now is None else now - was
-
-
-def _peak_of_all(pictures: list[Picture], lies: list[Lie]) -> Array | None:
-    """How far from where it lies the outline fits best, in all cameras together."""
-    total = np.zeros((2 * _STEP_REACH_PX + 1, 2 * _STEP_REACH_PX + 1), np.float32)
-    for picture, lie in zip(pictures, lies, strict=True):
-        there = replace(lie.sketch, corner=lie.sketch.corner + np.round(lie.off_px))
-        around = _cut(picture, there, _STEP_REACH_PX)
-        if around is None:
-            return None
-        total += _scores(around, there)
-    row, column = (int(x) for x in np.unravel_index(int(total.argmax()), total.shape))
-    return np.array([column, row]) - _STEP_REACH_PX + _between(total, column, row)
+    places = []
+    for frames in ([f.before for f in fragments], [f.after for f in fragments]):
+        total = np.zeros((2 * _STEP_REACH_PX + 1, 2 * _STEP_REACH_PX + 1), np.float32)
+        for frame, f, lie in zip(frames, fragments, lies, strict=True):
+            there = replace(lie.sketch, corner=lie.sketch.corner + np.round(lie.off_px))
+            around, moved = _cut(frame, there, _STEP_REACH_PX), _cut(f.moved, there, _STEP_REACH_PX)
+            if around is None or moved is None:
+                return None
+            near = cv2.dilate(moved, np.ones((_NEAR_PX, _NEAR_PX), np.uint8))
+            total += _scores(clearness(slope_of(around)) * near, there)
+        row, column = (int(x) for x in np.unravel_index(int(total.argmax()), total.shape))
+        places.append(np.array([column, row]) - _STEP_REACH_PX + _between(total, column, row))
+    was, now = places
+    return np.asarray(now - was) if np.abs(now).max() <= _STAYS_PX else None
 
 
 def _scores(around: Picture, sketch: Sketch) -> Picture:
@@ -93,7 +98,7 @@ def _common_row(scores: list[Picture]) -> int:
     return int(np.argmax(best))
 
 
-def _cut(edge: Picture, sketch: Sketch, reach_px: int) -> Picture | None:
+def _cut(edge: Picture | NDArray[np.uint8], sketch: Sketch, reach_px: int) -> Picture | None:
     """The picture where the sketch is, and `reach_px` around it; zero beyond its rim, None if all beyond."""
     height, width = edge.shape
     rows, columns = sketch.lines.shape

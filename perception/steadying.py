@@ -17,8 +17,8 @@ from executive.types import Array
 Picture = NDArray[np.float32]
 
 LARGEST_SHIFT_PX = 20.0
-_MOST_STEPS = 12
-_CONVERGED_PX = 0.01
+_MOST_STEPS = 8
+_CONVERGED_PX = 0.015
 _GAINS = (0.5, 2.0)
 _RIM_PX = 6  # of the halved picture, where moving brings in what was not seen
 _OUTLIER_MEDIANS = 3.0  # of the difference: two standard deviations
@@ -41,19 +41,19 @@ class Laid:
 def lay_onto(reference: Picture, frame: Picture) -> Laid:
     """Lay a frame onto a reference, both (h, w) [counts], 32 or more pixels a side."""
     small, small_frame = _halved(reference), _halved(frame)
-    shift, gain, offset = _refined(small, small_frame, _coarse_shift(small, small_frame))
+    shift, gain, offset, rest = _refined(small, small_frame, _coarse_shift(small, small_frame))
     laid = np.float32(gain) * _moved(frame, 2 * shift) + np.float32(offset)
-    wanted = _inner(small)
-    rest = np.median(
-        np.abs(np.float32(gain) * _inner(_moved(small_frame, shift)) + np.float32(offset) - wanted)
-    )
-    texture = np.median(np.abs(wanted - np.median(wanted)))
-    return Laid(laid, 2 * shift, float(rest), float(texture))
+    shown = _inner(small)
+    texture = float(np.median(np.abs(shown - np.median(shown))))
+    return Laid(laid, 2 * shift, rest, texture)
 
 
-def _refined(reference: Picture, frame: Picture, shift: Array) -> tuple[Array, float, float]:
-    """Shift, gain and offset by Gauss-Newton on the pixels that agree, slopes taken from the reference."""
-    gain, offset = 1.0, 0.0
+def _refined(reference: Picture, frame: Picture, shift: Array) -> tuple[Array, float, float, float]:
+    """Shift, gain, offset and the median rest, by Gauss-Newton on the pixels that agree.
+
+    Slopes are the reference's.
+    """
+    gain, offset, usual = 1.0, 0.0, 0.0
     wanted = _inner(reference)
     along_u = (_inner(reference, 1, 0) - _inner(reference, -1, 0)) / 2
     along_v = (_inner(reference, 0, 1) - _inner(reference, 0, -1)) / 2
@@ -62,7 +62,8 @@ def _refined(reference: Picture, frame: Picture, shift: Array) -> tuple[Array, f
     for _ in range(_MOST_STEPS):
         rest = np.float32(gain) * _inner(_moved(frame, shift)) + np.float32(offset) - wanted
         size = np.abs(rest)
-        A = basis * (size <= _OUTLIER_MEDIANS * float(np.median(size)) + 1e-3)
+        usual = float(np.median(size[::2]))
+        A = basis * (size <= _OUTLIER_MEDIANS * usual + 1e-3)
         G = (A @ A.T).astype(np.float64)
         G += np.diag(_RIDGE * np.diag(G) + 1e-9)
         step = np.linalg.solve(G, -(A @ rest).astype(np.float64))
@@ -72,7 +73,7 @@ def _refined(reference: Picture, frame: Picture, shift: Array) -> tuple[Array, f
         offset = offset * change + float(step[3] + (1 - change) * mean)
         if np.abs(step[:2]).max() < _CONVERGED_PX:
             break
-    return shift, float(gain), float(offset)
+    return shift, gain, offset, usual
 
 
 def _coarse_shift(reference: Picture, frame: Picture) -> Array:

@@ -11,7 +11,6 @@ from executive.types import Array, Centres, Images, PoseEstimate, Source
 from perception.chain import Chain
 from perception.coarse_position import coarse_position
 from perception.exposure import view_of
-from perception.frames import check_frames
 from perception.moving_rover import moving_rover
 from perception.prediction import Expectation
 
@@ -55,7 +54,6 @@ def _seen(chain: Chain, expectation: Expectation, data: Images | Centres) -> tup
     """The moving rover's place (3,) in site [m] and its covariance (3, 3)."""
     if isinstance(data, Centres):
         return _from_middles(chain, expectation, data)
-    check_frames(data, chain.rig.sensor)
     moving = moving_rover(chain, expectation, data, view_of(chain, expectation.state).range_m)
     return None if moving is None else (moving.position_m, moving.covariance)
 
