@@ -23,11 +23,12 @@ from perception.motion import LEAST_SIDE_PX, Fragments, motion_fragments
 from perception.outline import Outline
 from perception.outline_fit import Lie, lay_outlines, step_between
 from perception.prediction import Expectation
+from perception.rotation import rot_z
 from perception.steadying import Picture
 
 _WORKING_PX = 64.0  # a rover as long as this shows what is needed; nearer ones are binned
-_PASSES = ((2, 20, 1.5), (1, 6, 1.0), (1, 4, 1.0))  # halved?, reach and blur [px]
 _LEAST_ALIKE = 0.2
+_LARGEST_TURN_RAD = math.radians(5.0)
 _MOST_APART_PX = 1.5  # binned, between what is seen and what a point in space can show
 _LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.15, 0.1  # binned
 _SHAPE_SIGMA_M = 0.006  # what the drawing leaves out, and a heading that is off
@@ -35,6 +36,20 @@ _HEIGHT_SIGMA_M = 0.03
 _CLIMB_SIGMA_M = 0.007  # of a step: it mostly follows the ground
 _UNKNOWN_M = 10.0
 _SHAKE_PX = 3.0 / math.sqrt(3.0)  # how far a vibrating head is from where it says, per axis
+
+
+@dataclass(frozen=True)
+class _Pass:
+    """One pass of the search: on edges halved or not, how far around, how soft the lines [px], and which
+    headings besides the one before, in the prediction's sigmas."""
+
+    halvings: int
+    reach_px: int
+    blur_px: float
+    turns: tuple[float, ...] = (0.0,)
+
+
+_PASSES = (_Pass(2, 20, 1.5), _Pass(1, 6, 1.0, (-1.2, 0.0, 1.2)), _Pass(1, 4, 1.0, (-0.5, 0.0, 0.5)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +78,8 @@ def moving_rover(chain: Chain, expectation: Expectation, images: Images, range_m
     check_frames(images, chain.rig.sensor)
     search = _Search.of(chain, expectation, images, range_m)
     found = _Found(expectation.state.site_body, np.eye(3), (), 0.0) if search.fragments else None
-    for halvings, reach_px, blur_px in _PASSES:
-        found = None if found is None else search.look(found.site_body, halvings, reach_px, blur_px)
+    for each in _PASSES:
+        found = None if found is None else search.best(found.site_body, each)
     if (
         found is None
         or min(lie.alike for lie in found.lies) < _LEAST_ALIKE
@@ -103,6 +118,11 @@ class _Found:
         return min(lie.alike for lie in self.lies)
 
     @property
+    def fit(self) -> float:
+        """How well the outlines fit, of all cameras."""
+        return sum(lie.alike for lie in self.lies)
+
+    @property
     def credible(self) -> bool:
         return self.alike >= _LEAST_ALIKE and self.apart_px <= _MOST_APART_PX
 
@@ -131,11 +151,19 @@ class _Search:
         head_rad = (images.head.pan_rad, images.head.tilt_rad)
         return cls(chain, expectation, head_rad, binning, fragments)
 
-    def look(self, site_body: Transform, halvings: int, reach_px: int, blur_px: float) -> _Found | None:
-        """Lay the outlines near a pose; None where they do not fall into the pictures."""
+    def best(self, site_body: Transform, each: _Pass) -> _Found | None:
+        """The best of some headings; None where the outlines do not fall into the pictures."""
+        sigma = min(math.sqrt(self.expectation.covariance[5, 5]), _LARGEST_TURN_RAD)
+        turned = [Transform(rot_z(t * sigma) @ site_body.rotation, site_body.position_m) for t in each.turns]
+        found = [f for body in turned if (f := self.look(body, each)) is not None]
+        return max(found, key=lambda f: f.fit, default=None)
+
+    def look(self, site_body: Transform, each: _Pass) -> _Found | None:
+        """Lay the outlines near a pose."""
+        halvings = each.halvings
         outlines = [self._outline(camera, halvings) for camera in self.fragments]
         edges = [_halved(f.edges) if halvings > 1 else f.edges for f in self.fragments.values()]
-        lies = lay_outlines(outlines, edges, site_body, reach_px, blur_px)
+        lies = lay_outlines(outlines, edges, site_body, each.reach_px, each.blur_px)
         if lies is None:
             return None
         middle = self._middle(site_body)
@@ -152,7 +180,10 @@ class _Search:
         point, P = coarse_position(self.chain.model, uv, sigma_px, (up, height, sigma_height))
         moved = Transform(site_body.rotation, site_body.position_m + head.apply(point[None])[0] - middle)
         off = self.chain.model.project(point[None])[:, 0] - uv
-        apart_px = float(np.nanmax(np.abs(off))) / (self.binning * halvings)
+        off = off[[outline.camera for outline in outlines]]
+        if not np.isfinite(off).all():  # lines of sight that part: in front of the cameras they do not meet
+            return None
+        apart_px = float(np.abs(off).max()) / (self.binning * halvings)
         return _Found(moved, head.rotation @ P @ head.rotation.T, lies, apart_px)
 
     def step(self, found: _Found) -> tuple[Array, Array]:

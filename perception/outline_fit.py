@@ -22,7 +22,7 @@ from perception.steadying import Picture
 _ROW_SLACK = 1  # pixels by which the rows of both cameras may part
 _NEAR_PX = 9
 _STAYS_PX = 2.0
-_STEP_REACH_PX = 12  # twice what the rover drives between two frames
+_STEP_REACH_PX = 10  # a little more than the rover drives between two frames
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,8 @@ def step_between(fragments: list[Fragments], lies: list[Lie]) -> Array | None:
         row, column = (int(x) for x in np.unravel_index(int(total.argmax()), total.shape))
         places.append(np.array([column, row]) - _STEP_REACH_PX + _between(total, column, row))
     was, now = places
-    return np.asarray(now - was) if np.abs(now).max() <= _STAYS_PX else None
+    clear = np.abs(now).max() <= _STAYS_PX and np.abs(was).max() < _STEP_REACH_PX - 1
+    return np.asarray(now - was) if clear else None
 
 
 def _scores(around: Picture, sketch: Sketch) -> Picture:
