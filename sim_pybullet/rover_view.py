@@ -181,7 +181,7 @@ def _far_to_near(parts: list[_Placed], eye: Array) -> list[_Placed]:
 
 
 def _must_follow(part: _Placed, other: _Placed, eye: Array) -> bool:
-    """Whether `part` may hide some of `other`; not where either could the other, for they lie side by side."""
+    """Whether `part` may hide some of `other`; not where either could: they lie side by side."""
     return _hides(part, other, eye) and not _hides(other, part, eye)
 
 
