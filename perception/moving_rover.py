@@ -27,7 +27,7 @@ from perception.rotation import rot_z
 from perception.steadying import Picture
 
 _WORKING_PX = 64.0  # a rover as long as this shows what is needed; nearer ones are binned
-_LEAST_ALIKE = 0.2
+_LEAST_ALIKE = 0.28  # rovers have 0.33 and more, specks that chance has put under an outline up to 0.24
 _LARGEST_TURN_RAD = math.radians(5.0)
 _MOST_APART_PX = 1.5  # binned, between what is seen and what a point in space can show
 _LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.15, 0.1  # binned
@@ -35,6 +35,7 @@ _SHAPE_SIGMA_M = 0.006  # what the drawing leaves out, and a heading that is off
 _HEIGHT_SIGMA_M = 0.03
 _CLIMB_SIGMA_M = 0.007  # of a step: it mostly follows the ground
 _UNKNOWN_M = 10.0
+_GATE = 4.0  # sigmas
 _SHAKE_PX = 3.0 / math.sqrt(3.0)  # how far a vibrating head is from where it says, per axis
 
 
@@ -49,7 +50,7 @@ class _Pass:
     turns: tuple[float, ...] = (0.0,)
 
 
-_PASSES = (_Pass(2, 20, 1.5), _Pass(1, 6, 1.0, (-1.2, 0.0, 1.2)), _Pass(1, 4, 1.0, (-0.5, 0.0, 0.5)))
+_PASSES = (_Pass(2, 20, 1.5), _Pass(1, 14, 1.0, (-1.2, 0.0, 1.2)), _Pass(1, 4, 1.0, (-0.5, 0.0, 0.5)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,9 +174,7 @@ class _Search:
         head = self.chain.site_ih(self.head_rad)
         up = head.rotation.T @ [0.0, 0.0, 1.0]
         height = self._middle(self.expectation.state.site_body)[2] - head.position_m[2]
-        sigma_height = math.hypot(math.sqrt(self.expectation.covariance[2, 2]), _HEIGHT_SIGMA_M)
-        if len(outlines) > 1:
-            sigma_height = _UNKNOWN_M
+        sigma_height = self._height_sigma_m() if len(outlines) == 1 else _UNKNOWN_M
         sigma_px = np.full(2, _LIE_SIGMA_PX * self.binning * halvings)
         point, P = coarse_position(self.chain.model, uv, sigma_px, (up, height, sigma_height))
         moved = Transform(site_body.rotation, site_body.position_m + head.apply(point[None])[0] - middle)
@@ -185,6 +184,12 @@ class _Search:
             return None
         apart_px = float(np.abs(off).max()) / (self.binning * halvings)
         return _Found(moved, head.rotation @ P @ head.rotation.T, lies, apart_px)
+
+    def on_the_ground(self, found: _Found) -> bool:
+        """Whether the height of what was found may be that of the ground there."""
+        sigma = math.hypot(self._height_sigma_m(), math.sqrt(found.covariance[2, 2]))
+        off = found.site_body.position_m[2] - self.expectation.state.site_body.position_m[2]
+        return bool(abs(off) <= _GATE * sigma)
 
     def step(self, found: _Found) -> tuple[Array, Array]:
         """What the rover moved between the frames (3,) [m], and its covariance (3, 3)."""
@@ -207,6 +212,10 @@ class _Search:
         corner = self.fragments[camera].corner_px
         joints = self.expectation.state.joints_rad
         return Outline(self.chain, joints, self.head_rad, camera, self.binning * halvings, corner)
+
+    def _height_sigma_m(self) -> float:
+        """How well the height of the ground there is known."""
+        return math.hypot(math.sqrt(self.expectation.covariance[2, 2]), _HEIGHT_SIGMA_M)
 
     def _middle(self, site_body: Transform) -> Array:
         """The middle (3,) of the rover's height."""
