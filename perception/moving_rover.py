@@ -27,7 +27,8 @@ from perception.rotation import rot_z
 from perception.steadying import Picture
 
 _WORKING_PX = 64.0  # a rover as long as this shows what is needed; nearer ones are binned
-_LEAST_ALIKE = 0.28  # rovers have 0.33 and more, specks that chance has put under an outline up to 0.24
+# Rovers have 0.33 and 0.4 or more; where chance has put specks under an outline, one of both is less.
+_LEAST_ALIKE, _LEAST_COVERED = 0.3, 0.3
 _LARGEST_TURN_RAD = math.radians(5.0)
 _MOST_APART_PX = 1.5  # binned, between what is seen and what a point in space can show
 _LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.15, 0.1  # binned
@@ -125,7 +126,10 @@ class _Found:
 
     @property
     def credible(self) -> bool:
-        return self.alike >= _LEAST_ALIKE and self.apart_px <= _MOST_APART_PX
+        """Whether enough of the outline is there, in each camera and at one place in space."""
+        covered = min(lie.covered for lie in self.lies)
+        alike = self.alike >= _LEAST_ALIKE and covered >= _LEAST_COVERED
+        return alike and self.apart_px <= _MOST_APART_PX
 
 
 @dataclass(frozen=True, eq=False)

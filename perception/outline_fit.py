@@ -28,10 +28,11 @@ _STEP_REACH_PX = 10  # a little more than the rover drives between two frames
 @dataclass(frozen=True, eq=False)
 class Lie:
     """How an outline lies: by how much it is off the expected place (u, v) [binned px], how alike lines and
-    moving edges are there (correlation), and the sketch."""
+    moving edges are there (correlation), which share of the lines is on some, and the sketch."""
 
     off_px: Array
     alike: float
+    covered: float
     sketch: Sketch
 
 
@@ -57,7 +58,7 @@ def lay_outlines(
         band = score[top : row + _ROW_SLACK + 1]
         j, i = (int(x) for x in np.unravel_index(int(band.argmax()), band.shape))
         off = np.array([i, top + j]) - reach_px
-        lies.append(Lie(off + _between(score, i, top + j), _alike(edge, sketch, off), sketch))
+        lies.append(Lie(off + _between(score, i, top + j), *_support(edge, sketch, off), sketch))
     return lies
 
 
@@ -113,12 +114,15 @@ def _cut(edge: Picture | NDArray[np.uint8], sketch: Sketch, reach_px: int) -> Pi
     return np.asarray(cv2.copyMakeBorder(inside, *pad, cv2.BORDER_CONSTANT, value=0), dtype=np.float32)
 
 
-def _alike(edge: Picture, sketch: Sketch, off: Array) -> float:
-    """Correlation of the lines with the edges that they lie on."""
+def _support(edge: Picture, sketch: Sketch, off: Array) -> tuple[float, float]:
+    """Correlation of the lines with the edges that they lie on, and the share of them that lies on any."""
     under = _cut(edge, replace(sketch, corner=sketch.corner + off), 0)
-    if under is None or under.std() == 0:
-        return 0.0
-    return float(np.corrcoef(under.ravel(), sketch.lines.ravel())[0, 1])
+    if under is None or not under.any():
+        return 0.0, 0.0
+    on = under - under.mean()
+    lines = sketch.lines - sketch.lines.mean()
+    alike = float((on * lines).sum()) / float(np.linalg.norm(on) * np.linalg.norm(lines))
+    return alike, float(sketch.lines[under > 0].sum() / sketch.lines.sum())
 
 
 def _between(score: Picture, column: int, row: int) -> Array:
