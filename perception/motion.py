@@ -22,6 +22,7 @@ _SMOOTH_PX = 0.8
 _SMOOTH_NOISE = 1 / (2 * math.sqrt(math.pi) * _SMOOTH_PX)  # what the smoothing leaves of white noise
 _MAD = 1.4826
 _SPARSE = 4  # of pixels that tell the unrest
+_NEAR_PX = 7
 _THRESHOLD = 4.0  # multiples of the unrest
 _REGISTRATION_PX = 0.05  # how far off the frames may lie on each other
 _CLEAR = 6.0  # unrests, or usual slopes, from which an edge is as clear as can be
@@ -35,16 +36,16 @@ _MOST_MOVED = 0.3  # share of the picture; where more differs, the frames do not
 class Fragments:
     """Motion in one camera, in pixels of `binning` x `binning` full ones from `corner_px` on.
 
-    `moved` (h, w) is 1 where something moved, else 0, `edges` (h, w) how clear an edge of the second frame is
-    there; `before` and `after` (h, w) are the frames, the first as the head saw the second; `shaken_px` is by
-    how many full pixels the head moved the picture; `region` bounds the largest blob and those near it, in
-    pixels of the full frame.
+    `moved` (h, w) is 1 where something moved, else 0; `edges` (h, w) is how clear an edge of the second frame
+    is there, `lines` (h, w) the same of all edges near by: what moves along its own edges does not change
+    them. `before` (h, w) is the first frame as the head saw the second; `shaken_px` is by how many full
+    pixels the head moved the picture; `region` bounds the largest blob and those near it in the full frame.
     """
 
     moved: NDArray[np.uint8]
     edges: Picture
+    lines: Picture
     before: Picture
-    after: Picture
     binning: int
     corner_px: tuple[int, int]
     shaken_px: Vec2
@@ -85,8 +86,8 @@ def motion_fragments(
     return Fragments(
         moved=moved,
         edges=np.asarray(np.sqrt(clear * np.minimum(unrest, _CLEAR)) * moved, dtype=np.float32),
+        lines=clear * near_to(moved),
         before=laid.counts,
-        after=second,
         binning=binning,
         corner_px=corner_px,
         shaken_px=(float(-laid.shift_px[0] * binning), float(-laid.shift_px[1] * binning)),
@@ -140,11 +141,17 @@ def clearness(slope: Picture) -> Picture:
     return np.asarray(np.minimum(slope, _CLEAR * usual) / np.float32(usual), dtype=np.float32)
 
 
+def near_to(moved: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """1 where something moved or did so a few pixels off, else 0."""
+    return np.asarray(cv2.dilate(moved, np.ones((_NEAR_PX, _NEAR_PX), np.uint8)), dtype=np.uint8)
+
+
 def _blobs(unrest: Picture, rim_px: int) -> NDArray[np.uint8]:
     """Where the change stands out, 1 or 0: specks opened away, the rest widened by a pixel all around."""
     mask = (unrest > _THRESHOLD).astype(np.uint8)
     mask[:rim_px], mask[-rim_px:], mask[:, :rim_px], mask[:, -rim_px:] = 0, 0, 0, 0
-    mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((2, 2), np.uint8)).astype(np.uint8)
+    two = np.ones((2, 2), np.uint8)
+    mask = cv2.dilate(cv2.erode(mask, two, anchor=(0, 0)), two, anchor=(1, 1)).astype(np.uint8)
     return np.asarray(cv2.dilate(mask, np.ones((3, 3), np.uint8)), dtype=np.uint8)
 
 

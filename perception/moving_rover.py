@@ -31,7 +31,7 @@ _WORKING_PX = 64.0  # a rover as long as this shows what is needed; nearer ones 
 _LEAST_ALIKE, _LEAST_COVERED = 0.3, 0.3
 _LARGEST_TURN_RAD = math.radians(5.0)
 _MOST_APART_PX = 1.5  # binned, between what is seen and what a point in space can show
-_LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.15, 0.1  # binned
+_LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.12, 0.12  # binned
 _SHAPE_SIGMA_M = 0.006  # what the drawing leaves out, and a heading that is off
 _HEIGHT_SIGMA_M = 0.03
 _CLIMB_SIGMA_M = 0.007  # of a step: it mostly follows the ground
@@ -42,8 +42,8 @@ _SHAKE_PX = 3.0 / math.sqrt(3.0)  # how far a vibrating head is from where it sa
 
 @dataclass(frozen=True)
 class _Pass:
-    """One pass of the search: on edges halved or not, how far around, how soft the lines [px], and which
-    headings besides the one before, in the prediction's sigmas."""
+    """One pass of the search: on what moved, halved, or on all lines near that; how far around, how soft the
+    outline [px], and turned by which parts of the heading's sigma."""
 
     halvings: int
     reach_px: int
@@ -91,18 +91,12 @@ def moving_rover(chain: Chain, expectation: Expectation, images: Images, range_m
     step, step_covariance = search.step(found)
     return Moving(
         position_m=found.site_body.position_m,
-        covariance=found.covariance + np.eye(3) * (_SHAPE_SIGMA_M**2 + _head_sigma_m(chain, range_m) ** 2),
+        covariance=found.covariance + np.eye(3) * _SHAPE_SIGMA_M**2 + search.head_share(found),
         step_m=step,
         step_covariance=step_covariance,
         regions=search.regions(),
         alike=found.alike,
     )
-
-
-def _head_sigma_m(chain: Chain, range_m: float) -> float:
-    """What the head's accuracy and its shaking do to a position, in any direction."""
-    shake_rad = _SHAKE_PX / chain.rig.cameras[0].focal_px
-    return range_m * math.hypot(float(chain.encoder_sigma_rad()[:2].max()), shake_rad)
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,8 +161,8 @@ class _Search:
         """Lay the outlines near a pose."""
         halvings = each.halvings
         outlines = [self._outline(camera, halvings) for camera in self.fragments]
-        edges = [_halved(f.edges) if halvings > 1 else f.edges for f in self.fragments.values()]
-        lies = lay_outlines(outlines, edges, site_body, each.reach_px, each.blur_px)
+        pictures = [_halved(f.edges) if halvings > 1 else f.lines for f in self.fragments.values()]
+        lies = lay_outlines(outlines, pictures, site_body, each.reach_px, each.blur_px)
         if lies is None:
             return None
         middle = self._middle(site_body)
@@ -194,6 +188,14 @@ class _Search:
         sigma = math.hypot(self._height_sigma_m(), math.sqrt(found.covariance[2, 2]))
         off = found.site_body.position_m[2] - self.expectation.state.site_body.position_m[2]
         return bool(abs(off) <= _GATE * sigma)
+
+    def head_share(self, found: _Found) -> Array:
+        """What the head's accuracy and its shaking do to a position, across the line of sight (3, 3)."""
+        sight = found.site_body.position_m - self.chain.site_ih(self.head_rad).position_m
+        shake_rad = _SHAKE_PX / self.chain.rig.cameras[0].focal_px
+        sigma_rad = math.hypot(float(self.chain.encoder_sigma_rad()[:2].max()), shake_rad)
+        share: Array = sigma_rad**2 * (np.eye(3) * float(sight @ sight) - np.outer(sight, sight))
+        return share
 
     def step(self, found: _Found) -> tuple[Array, Array]:
         """What the rover moved between the frames (3,) [m], and its covariance (3, 3)."""

@@ -8,6 +8,7 @@ run alike, so the best row is one for both.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import cv2
 import numpy as np
@@ -15,12 +16,11 @@ from numpy.typing import NDArray
 
 from executive.types import Array
 from perception.body import Transform
-from perception.motion import Fragments, clearness, slope_of
+from perception.motion import Fragments, clearness, near_to, slope_of
 from perception.outline import Outline, Sketch
 from perception.steadying import Picture
 
 _ROW_SLACK = 1  # pixels by which the rows of both cameras may part
-_NEAR_PX = 9
 _STAYS_PX = 2.0
 _STEP_REACH_PX = 10  # a little more than the rover drives between two frames
 
@@ -66,24 +66,26 @@ def step_between(fragments: list[Fragments], lies: list[Lie]) -> Array | None:
     """By how much (u, v) [px] the outline came on between the two frames.
 
     The mean of all cameras, which see nearly the same step; None where it leaves their pictures, or other
-    edges draw it away from where it lies. It is laid on all edges near what moved: what moves little changes
-    the same pixels in both frames, and these alone would say that it rests.
+    edges draw it away from where it lies. All lines near by take part: what moves little changes the same
+    pixels in both frames, and these alone would say that it rests.
     """
-    places = []
-    for frames in ([f.before for f in fragments], [f.after for f in fragments]):
-        total = np.zeros((2 * _STEP_REACH_PX + 1, 2 * _STEP_REACH_PX + 1), np.float32)
-        for frame, f, lie in zip(frames, fragments, lies, strict=True):
-            there = replace(lie.sketch, corner=lie.sketch.corner + np.round(lie.off_px))
-            around, moved = _cut(frame, there, _STEP_REACH_PX), _cut(f.moved, there, _STEP_REACH_PX)
-            if around is None or moved is None:
-                return None
-            near = cv2.dilate(moved, np.ones((_NEAR_PX, _NEAR_PX), np.uint8))
-            total += _scores(clearness(slope_of(around)) * near, there)
-        row, column = (int(x) for x in np.unravel_index(int(total.argmax()), total.shape))
-        places.append(np.array([column, row]) - _STEP_REACH_PX + _between(total, column, row))
-    was, now = places
-    clear = np.abs(now).max() <= _STAYS_PX and np.abs(was).max() < _STEP_REACH_PX - 1
-    return np.asarray(now - was) if clear else None
+    was, now = np.zeros((2, 2 * _STEP_REACH_PX + 1, 2 * _STEP_REACH_PX + 1), np.float32)
+    for f, lie in zip(fragments, lies, strict=True):
+        there = replace(lie.sketch, corner=lie.sketch.corner + np.round(lie.off_px))
+        before, after, moved = (_cut(p, there, _STEP_REACH_PX) for p in (f.before, f.lines, f.moved))
+        if before is None or after is None or moved is None:
+            return None
+        was += _scores(clearness(slope_of(before)) * near_to(moved), there)
+        now += _scores(after, there)
+    came_from, came_to = _peak(was), _peak(now)
+    clear = np.abs(came_to).max() <= _STAYS_PX and np.abs(came_from).max() < _STEP_REACH_PX - 1
+    return np.asarray(came_to - came_from) if clear else None
+
+
+def _peak(score: Picture) -> Array:
+    """Where scores are best, from their middle (u, v) [px]."""
+    row, column = (int(x) for x in np.unravel_index(int(score.argmax()), score.shape))
+    return np.array([column, row]) - _STEP_REACH_PX + _between(score, column, row)
 
 
 def _scores(around: Picture, sketch: Sketch) -> Picture:
@@ -100,7 +102,7 @@ def _common_row(scores: list[Picture]) -> int:
     return int(np.argmax(best))
 
 
-def _cut(edge: Picture | NDArray[np.uint8], sketch: Sketch, reach_px: int) -> Picture | None:
+def _cut(edge: NDArray[Any], sketch: Sketch, reach_px: int) -> NDArray[Any] | None:
     """The picture where the sketch is, and `reach_px` around it; zero beyond its rim, None if all beyond."""
     height, width = edge.shape
     rows, columns = sketch.lines.shape
@@ -111,7 +113,7 @@ def _cut(edge: Picture | NDArray[np.uint8], sketch: Sketch, reach_px: int) -> Pi
         return None
     pad = (top - v, v + rows + 2 * reach_px - bottom, left - u, u + columns + 2 * reach_px - right)
     inside = edge[top:bottom, left:right]
-    return np.asarray(cv2.copyMakeBorder(inside, *pad, cv2.BORDER_CONSTANT, value=0), dtype=np.float32)
+    return np.asarray(cv2.copyMakeBorder(inside, *pad, cv2.BORDER_CONSTANT, value=0), dtype=edge.dtype)
 
 
 def _support(edge: Picture, sketch: Sketch, off: Array) -> tuple[float, float]:
