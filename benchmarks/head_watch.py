@@ -23,7 +23,7 @@ from perception.chain import Chain
 from perception.head_watch import DOWN_RAD
 from perception.registration import matched
 from sim_pybullet.geometric import CentreDeveloper
-from sim_pybullet.ground_marks import SIGMA_PX, GroundMarks
+from sim_pybullet.ground_marks import SIGMA_PX
 from sim_pybullet.imaging import ImageDeveloper
 from sim_pybullet.leds import MarkerOptics
 from sim_pybullet.picture import Picture
@@ -85,9 +85,7 @@ def developers(seed: int) -> dict[str, Callable[[], ImageDeveloper | CentreDevel
     optics = MarkerOptics(RIG, calibrated_light(RIG), field)
     return {
         "full": lambda: ImageDeveloper(Picture(RIG, terrain, SUN, rng), rng),
-        "geometric": lambda: CentreDeveloper(
-            optics, Exposure(RIG.sensor.bits), GroundMarks(field, rng.spawn(1)[0]), rng
-        ),
+        "geometric": lambda: CentreDeveloper(optics, Exposure(RIG.sensor.bits), field, rng),
     }
 
 

@@ -21,6 +21,7 @@ from executive.types import (
     Outcome,
     PoseEstimate,
     Quality,
+    Segment,
     Shot,
     TetherReading,
     TiltReading,
@@ -144,11 +145,12 @@ class Backend(Protocol):
 
 @dataclass(frozen=True)
 class LocaliseRequest:
-    """A localisation asked for: its quality, where to look, and how long it may take."""
+    """A localisation asked for: its quality, where to look, how long it may take, and where the way leads."""
 
     quality: Quality
     predicted: PoseEstimate
     budget_s: float = 600.0
+    segment: Segment | None = None
 
 
 class Localizer(Protocol):

@@ -75,6 +75,7 @@ class Source(StrEnum):
     PREDICTION = "prediction"
     TREND = "trend"
     MARKERS = "markers"
+    PASSIVE = "passive"  # outlines, where no marker shows
 
 
 def frozen_array(values: object, shape: tuple[int, ...]) -> Array:
@@ -305,7 +306,8 @@ class Centres:
     """What the geometric tier returns in place of images: marker centres in full-frame pixels.
 
     Shapes: `uv_px` (2 cameras, 4 markers, 2), NaN where not detected; `sigma_px` (2, 4). `ground` is what a
-    picture (one frame, no LED lit) shows of the landscape, left and right; None for any other shot.
+    picture (one frame, no LED lit) shows of the landscape, left and right; None for any other shot. Three and
+    more frames without an LED are for outlines: `uv_px` is then where the rover's outline puts the markers.
     `saturated` says of each camera whether there was too much light to see anything.
     """
 

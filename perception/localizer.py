@@ -6,7 +6,9 @@ It either returns a pose whose residuals and place are plausible, or a reason; n
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
+
+import numpy as np
 
 from executive.clock import Clock
 from executive.ports import Action, Devices, LocaliseRequest
@@ -20,62 +22,49 @@ from executive.types import (
     PoseEstimate,
     Quality,
     Reason,
-    Shot,
     Source,
     Vec2,
 )
 from executive.types import View as Seen
-from perception.body import plc_in_body
-from perception.chain import Chain, body_transform
+from perception.aim import Aim
+from perception.chain import Chain
+from perception.empty_views import EmptyViews
 from perception.exposure import View, view_of
-from perception.follow_up import pointing_at
 from perception.head_watch import HeadWatch, surprising
 from perception.joint import JointFix
+from perception.ladder import FULL_FRAMES, LADDER
 from perception.localisation import Localisation, empty
+from perception.outlines import Found, Outlines
 from perception.plausibility import Choice, Rejection
 from perception.pose import Fix
-from perception.prediction import Expectation, expect
+from perception.prediction import Expectation
 from perception.rotation import quat_from_matrix
-from perception.routine import Routine, Steps, wait_for
-from perception.sight import Eyes, Scope, Sight
-from perception.trend import CADENCE_S, LEDS, coarse_pose, window_margin_px
-
-_REPOINT_RAD = math.radians(1.0)
-
-
-@dataclass(frozen=True)
-class Try:
-    """One rung of the search: how wide to look, and where to besides the prediction."""
-
-    scope: Scope
-    pan_offset_rad: float = 0.0
-    tilt_offset_rad: float = 0.0
-
-
-_STEP_RAD = math.radians(8.0)  # of the search pattern: a third of the field of view
-_SEARCH = tuple(
-    Try(Scope(None), pan * _STEP_RAD, tilt * _STEP_RAD)
-    for pan, tilt in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1))
-)
-LADDER = (Try(Scope(1.0)), Try(Scope(2.5, 2.0)), Try(Scope(None)), *_SEARCH)
-FULL_FRAMES = 2  # the rung from which on windows hide nothing
+from perception.routine import Routine, Steps
+from perception.scouting import Scout
+from perception.sight import Eyes, Sight
+from perception.tendency import Tendency
 
 
 class LedStereoLocalizer:
     """Implements executive.ports.Localizer with LED difference images and a stereo pair."""
 
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
-        self._devices, self._rig, self._clock = devices, rig, clock
+        self._clock = clock
         self._chain = Chain.of(rig)
+        self._aim = Aim(devices, self._chain, clock)
         self._eyes = Eyes(devices, rig, clock)
+        self._tendency = Tendency(devices, self._chain, clock, self._aim, self._eyes)
         self._watch = HeadWatch(devices, self._chain, clock)
+        views = EmptyViews(self._chain)
+        self._scout = Scout(devices, self._chain, clock, self._aim, views)
+        self._outlines = Outlines(devices, self._chain, clock, self._aim, views)
         self.last: Localisation | None = None
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
         """Measure the rover's pose; see executive.ports.Localizer."""
         deadline = self._clock.now_s + request.budget_s
         if request.quality is Quality.TREND:
-            return Routine(self._tendency(request, deadline))
+            return Routine(self._moving(request, deadline))
         return Routine(self._watched_fix(request, deadline))
 
     def views(self) -> tuple[Seen, ...]:
@@ -90,9 +79,13 @@ class LedStereoLocalizer:
 
     def pointing(self, pose: PoseEstimate) -> Vec2:
         """Pan and tilt [rad] that put the marker plate of this pose in the stereoscopic middle."""
-        cabin = self._devices.cabin.read()
-        plc = body_transform(pose) @ plc_in_body(self._rig.cabin, cabin.arm_rad, cabin.cabin_rad)
-        return pointing_at(self._chain, plc.apply(self._chain.markers_plc_m).mean(axis=0))
+        return self._aim.pointing(pose)
+
+    def _moving(self, request: LocaliseRequest, deadline: float) -> Steps[Outcome[PoseEstimate]]:
+        """A tendency, and what it looked at."""
+        outcome = yield from self._tendency.measure(request, deadline)
+        self.last = self._tendency.last or self.last
+        return outcome
 
     # -- the head, before and after a fix
 
@@ -104,6 +97,7 @@ class LedStereoLocalizer:
             if wrong is not None:
                 return Outcome(Reason.MISALIGNED, wrong)
         self._watch.note, looked = "", self._watch.note
+        yield from self._scout.look_ahead(request, deadline)
         outcome = yield from self._fix(request, deadline)
         if not looked and _doubtful(outcome, request.predicted):
             wrong = yield from self._watch.look(request.predicted, deadline)
@@ -115,13 +109,16 @@ class LedStereoLocalizer:
     # -- active markers, at rest
 
     def _fix(self, request: LocaliseRequest, deadline: float) -> Steps[Outcome[PoseEstimate]]:
-        """Climb the ladder until a plausible fix, the budget's end, or the ladder's."""
-        why, retaken, rung = "no time for a single look", False, 0
+        """Climb the ladder until a plausible fix, the budget's end, or the ladder's.
+
+        Where the first rung shows no marker, the outline is asked before the search goes on.
+        """
+        why, outline, retaken, rung = "no time for a single look", "", False, 0
         while rung < len(LADDER):
-            turned = yield from self._turn_head(request, LADDER[rung], deadline)
+            turned = yield from self._aim.turn_to(request.predicted, LADDER[rung].offset_rad, deadline)
             if turned is not None:
                 return turned
-            expectation = self._expectation(request.predicted)
+            expectation = self._aim.expectation(request.predicted)
             sight = yield from self._eyes.look(expectation, LADDER[rung].scope, request.quality, deadline)
             if sight is None:
                 break
@@ -134,6 +131,11 @@ class LedStereoLocalizer:
                 return Outcome(Reason.DONE, _cost(sight), self._estimate(sight.data, answer))
             reason, why = problem or (Reason.NOT_SEEN, "")
             cut_off = isinstance(answer, Rejection) and rung < FULL_FRAMES  # a window may cut markers off
+            if reason is Reason.NOT_SEEN and not outline:
+                found = yield from self._outlines.find(request.predicted, deadline)
+                if isinstance(found, Found):
+                    return self._by_outline(request.quality, found, why)
+                outline = found
             if reason is Reason.NOT_SEEN or (reason is Reason.IMPLAUSIBLE and cut_off):
                 rung += 1
             elif retaken:
@@ -141,37 +143,14 @@ class LedStereoLocalizer:
                 return Outcome(reason, why, value)
             else:
                 retaken = True
-        return self._not_seen(request, why)
+        return self._not_seen(request, "; ".join(filter(None, (why, outline))))
 
-    def _turn_head(
-        self, request: LocaliseRequest, rung: Try, deadline: float
-    ) -> Steps[Outcome[PoseEstimate] | None]:
-        """Bring the prediction (plus an offset) to the stereoscopic middle; an outcome if that failed."""
-        pan, tilt = self.pointing(request.predicted)
-        pan, tilt = self._clip(pan + rung.pan_offset_rad, tilt + rung.tilt_offset_rad)
-        now = self._devices.head.read()
-        off = max(abs(math.remainder(pan - now.pan_rad, 2 * math.pi)), abs(tilt - now.tilt_rad))
-        if off <= _REPOINT_RAD and not now.moving:
-            return None
-        turned = yield from wait_for(self._devices.head.point(pan, tilt), self._clock, deadline)
-        return None if turned.ok else Outcome(turned.reason, f"head: {turned.detail}")
-
-    def _clip(self, pan: float, tilt: float) -> Vec2:
-        head = self._rig.head
-        pan = math.remainder(pan, 2 * math.pi)
-        low, high = head.tilt_limits_rad
-        return min(max(pan, -head.pan_limit_rad), head.pan_limit_rad), min(max(tilt, low), high)
-
-    def _expectation(self, predicted: PoseEstimate) -> Expectation:
-        head, cabin = self._devices.head.read(), self._devices.cabin.read()
-        tilt = self._devices.inclinometer.read()
-        return expect(
-            self._chain,
-            predicted,
-            (head.pan_rad, head.tilt_rad),
-            (cabin.arm_rad, cabin.cabin_rad),
-            (tilt.roll_rad, tilt.pitch_rad),
-        )
+    def _by_outline(self, quality: Quality, found: Found, why: str) -> Outcome[PoseEstimate]:
+        self.last = empty(found.data.time_s, quality, len(self._chain.markers_plc_m), found.data, 0, "")
+        if isinstance(found.data, Images):
+            left, right = (counts.mean(axis=0, dtype=np.float32) for counts in found.data.counts)
+            self.last = replace(self.last, reference=(left, right))
+        return Outcome(Reason.DONE, f"{found.note}; as {why}", found.pose)
 
     def _judge(self, expectation: Expectation, sight: Sight) -> tuple[Reason, str] | None:
         """What speaks against this sight; None if nothing does."""
@@ -181,7 +160,7 @@ class LedStereoLocalizer:
             problem = Reason.UNSTABLE_IMAGES, sight.problem
         elif isinstance(answer, Rejection):
             problem = (Reason.NOT_SEEN if answer.seen < 2 else Reason.IMPLAUSIBLE), answer.why
-        elif misfit := expectation.misfit(answer.fix):
+        elif misfit := expectation.misfit(answer.fix.state.site_body, answer.fix.covariance):
             problem = Reason.IMPLAUSIBLE, misfit
         if problem is not None and self.last is not None:
             self.last = replace(self.last, why=problem[1])
@@ -189,7 +168,7 @@ class LedStereoLocalizer:
 
     def _not_seen(self, request: LocaliseRequest, why: str) -> Outcome[PoseEstimate]:
         """POOR_VIEW where the prediction explains that nothing was seen, NOT_SEEN otherwise."""
-        expectation = self._expectation(request.predicted)
+        expectation = self._aim.expectation(request.predicted)
         view = view_of(self._chain, expectation.state)
         pairs, most = self._eyes.most_pairs(expectation, request.quality)
         if view.cosine <= 0 or pairs > most:
@@ -221,28 +200,6 @@ class LedStereoLocalizer:
                 chi2=fix.chi2,
                 dof=fix.dof,
             )
-
-    # -- motion fragments, while moving
-
-    def _tendency(self, request: LocaliseRequest, deadline: float) -> Steps[Outcome[PoseEstimate]]:
-        """Two frames, fragments, a coarse pose."""
-        turned = yield from self._turn_head(request, Try(Scope(1.0)), deadline)
-        if turned is not None:
-            return turned
-        expectation = self._expectation(request.predicted)
-        range_m = view_of(self._chain, expectation.state).range_m
-        windows = self._eyes.windows(expectation, 1.0, window_margin_px(self._rig, range_m))
-        shot = Shot(LEDS, windows, CADENCE_S)
-        start_s = self._clock.now_s
-        taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline)
-        if taken.value is None or not taken.ok:
-            return Outcome(taken.reason, f"cameras: {taken.detail}")
-        pose = coarse_pose(self._chain, expectation, request.predicted, taken.value, start_s)
-        why = "" if pose is not None else "nothing moved between two frames"
-        self.last = empty(
-            taken.value.time_s, request.quality, len(self._chain.markers_plc_m), taken.value, 0, why
-        )
-        return Outcome(Reason.NOT_SEEN, why) if pose is None else Outcome(Reason.DONE, value=pose)
 
 
 def _doubtful(outcome: Outcome[PoseEstimate], predicted: PoseEstimate) -> bool:

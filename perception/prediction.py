@@ -10,7 +10,7 @@ import numpy as np
 from executive.types import Array, PoseEstimate, Vec2
 from perception.body import Transform
 from perception.chain import Chain, ChainState, body_transform
-from perception.pose import Fix, Prior, chi2_limit
+from perception.pose import Prior, chi2_limit
 from perception.rotation import log_map, rot_x, rot_y, rot_z
 
 # A planar prediction knows little of the ground ahead: what terrain adds to height, roll and pitch.
@@ -57,12 +57,12 @@ class Expectation:
         turn = log_map(body.rotation @ here.rotation.T)
         return np.concatenate([body.position_m - here.position_m, turn])[_PLANAR]
 
-    def misfit(self, fix: Fix) -> str:
-        """Why a fix is too far from the prediction to be believed; empty if it is not."""
+    def misfit(self, body: Transform, covariance: Array) -> str:
+        """Why a body with this covariance (6, 6) is too far from the prediction to be believed, or empty."""
         if self.wide:
             return ""
-        off = self._off(fix.state.site_body)
-        P = (self.covariance + fix.covariance)[np.ix_(_PLANAR, _PLANAR)]
+        off = self._off(body)
+        P = (self.covariance + covariance)[np.ix_(_PLANAR, _PLANAR)]
         distance = float(off @ np.linalg.solve(P, off))
         if distance <= chi2_limit(len(_PLANAR), _GATE):
             return ""

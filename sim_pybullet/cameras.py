@@ -11,7 +11,6 @@ from executive.rig import RigCalibration
 from executive.types import HeadReading
 from sim_pybullet.exposing import Developer, SimCameras
 from sim_pybullet.geometric import CentreDeveloper
-from sim_pybullet.ground_marks import GroundMarks
 from sim_pybullet.imaging import ImageDeveloper
 from sim_pybullet.leds import MarkerOptics
 from sim_pybullet.picture import Picture
@@ -55,7 +54,6 @@ def _developer(
         return ImageDeveloper(Picture(rig, terrain, sun, rng), rng, stopwatch)
     if tier == "geometric":
         field = HeightField(terrain)
-        marks = GroundMarks(field, rng.spawn(1)[0])  # its own chance: the markers' luck stays as it is
         optics = MarkerOptics(rig, calibrated_light(rig), field)
-        return CentreDeveloper(optics, Exposure(rig.sensor.bits), marks, rng)
+        return CentreDeveloper(optics, Exposure(rig.sensor.bits), field, rng)
     raise ValueError(f"tier: got {tier!r}, expected one of {', '.join(TIERS)}")

@@ -11,11 +11,14 @@ from sim_pybullet.error_model import JOINT_EXCESS, CentreError, centre_error, jo
 from sim_pybullet.exposing import full_windows
 from sim_pybullet.ground_marks import GroundMarks, nothing_seen
 from sim_pybullet.leds import MarkerOptics, Spot
+from sim_pybullet.outline_model import Outline
 from sim_pybullet.projection import View, scene_views
 from sim_pybullet.radiometry import Exposure, spread_reach_px
+from sim_pybullet.raycast import HeightField
 from sim_pybullet.scene import SceneState
 
 CENTROID_SIGMA_PX = 15.0  # motion fragments: where the middle of a moving rover seems to be
+OUTLINE_FRAMES = 3
 LIGHT_CHANGE, SHIFT_PX = 0.05, 0.5
 """How far a frame may be from the mean of its shot; beyond, the detector refuses the images."""
 LEAST_LIGHT = 0.05
@@ -29,13 +32,15 @@ class CentreDeveloper:
     A marker that is hidden, dead, outside the window or not found by chance is NaN; in a coded shot chance
     finds all or none. A shot in which no LED is lit is one for motion fragments: it answers with the rover's
     projected middle, the mean over its frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN
-    elsewhere. A single such frame is a picture: it shows the `ground`.
+    elsewhere. A single such frame is a picture: it shows the `ground`. Three and more show the `outline`.
     """
 
     def __init__(
-        self, optics: MarkerOptics, exposure: Exposure, marks: GroundMarks, rng: np.random.Generator
+        self, optics: MarkerOptics, exposure: Exposure, field: HeightField, rng: np.random.Generator
     ) -> None:
-        self._optics, self._exposure, self._marks, self._rng = optics, exposure, marks, rng
+        of_marks, of_outline = rng.spawn(2)  # their own chance: the markers' luck stays as it is
+        self._optics, self._exposure, self._rng = optics, exposure, rng
+        self._marks, self._outline = GroundMarks(field, of_marks), Outline(of_outline)
         self._rig = optics.rig
 
     def develop(
@@ -47,6 +52,9 @@ class CentreDeveloper:
         if shot.leds == (0,):
             left, right = (self._ground(shot, scenes[0], camera, windows[camera]) for camera in (LEFT, RIGHT))
             return Centres(time_s, shot, uv_px, sigma_px, head, (left, right), self._full(shot, scenes))
+        if len(shot.leds) >= OUTLINE_FRAMES and not any(shot.leds):
+            uv_px, sigma_px[:] = self._outlined(shot, scenes, windows)
+            return Centres(time_s, shot, uv_px, sigma_px, head, saturated=self._full(shot, scenes))
         for camera in (LEFT, RIGHT):
             if any(shot.leds):
                 found = self._markers(shot, scenes, camera, windows[camera])
@@ -98,6 +106,19 @@ class CentreDeveloper:
             return nothing_seen()
         T = scene.T_site_body
         return self._marks.seen(view, window, T[:3, :3] @ _ROVER_MIDDLE_BODY_M + T[:3, 3])
+
+    def _outlined(
+        self, shot: Shot, scenes: tuple[SceneState, ...], windows: tuple[Window, Window]
+    ) -> tuple[Array, float]:
+        """Where the outline puts the markers; nowhere in frames that differ or are overexposed."""
+        scene = scenes[-1]
+        views = scene_views(self._rig, scene)
+        uv_px, sigma_px = self._outline.seen(
+            scene, views, windows, np.array(self._rig.markers.positions_plc_m)
+        )
+        if any(self._full(shot, scenes)) or not all(steady(scenes, view) for view in views):
+            uv_px = np.full_like(uv_px, np.nan)
+        return uv_px, sigma_px
 
     def _as_wired(self, scene: SceneState, spots: list[Spot]) -> list[Spot]:
         """The spots in the order in which the sequencer means to light them; one always lit shows nothing."""

@@ -6,7 +6,7 @@ from executive.nodes.action import ActionLeaf
 from executive.nodes.base import FromTree, In, InOut
 from executive.ports import Action, LocaliseRequest
 from executive.prediction import unusable
-from executive.types import Outcome, PoseEstimate, Quality, Reason, Segment
+from executive.types import Outcome, PoseEstimate, Quality, Reason, Segment, Source
 from executive.values import DURATION, POSE, QUALITY, SEGMENT
 
 
@@ -46,7 +46,8 @@ class Localise(ActionLeaf):
 
     def request(self) -> Action[PoseEstimate]:
         predicted = self.services.classification.predicted()
-        return self.services.localizer.locate(LocaliseRequest(self.quality, predicted, self.budget))
+        request = LocaliseRequest(self.quality, predicted, self.budget, self.segment)
+        return self.services.localizer.locate(request)
 
     def finish(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
         classification = self.services.classification
@@ -71,4 +72,5 @@ class Localise(ActionLeaf):
 
 
 def _summary(fix: PoseEstimate) -> str:
-    return f"{fix.markers} markers, sigma {fix.sigma_position_m * 1e3:.1f} mm"
+    rests_on = "outline" if fix.source is Source.PASSIVE else f"{fix.markers} markers"
+    return f"{rests_on}, sigma {fix.sigma_position_m * 1e3:.1f} mm"

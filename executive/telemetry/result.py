@@ -29,6 +29,7 @@ from executive.types import PoseEstimate, Reason, Source
 SCHEMA = 1
 NO_STOP = "the record ends without a stop"
 VISION_REASONS = frozenset({Reason.NOT_SEEN, Reason.POOR_VIEW, Reason.UNSTABLE_IMAGES, Reason.IMPLAUSIBLE})
+_FIXES = frozenset({Source.MARKERS, Source.PASSIVE})
 _TRUTH_KEYS = (
     "final_error_m",
     "waypoint_errors_m",
@@ -142,7 +143,7 @@ def pose_errors(history: History, track: Track) -> list[PoseError]:
 
 def vision_fixes(history: History) -> list[PoseEstimate]:
     """The precise localisations, in order of time."""
-    return [at.event for at in history.all(PoseEstimate) if at.event.source is Source.MARKERS]
+    return [at.event for at in history.all(PoseEstimate) if at.event.source in _FIXES]
 
 
 def _localisation(history: History, track: Track | None) -> dict[str, object]:

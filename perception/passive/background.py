@@ -21,6 +21,7 @@ _OUTLIER = 3.0  # spreads from which a pixel counts for another thing than groun
 _MAD = 1.4826
 _LEAST_GROUND = 0.5  # share of the view that must be ground as seen before
 _LEAST_EXPLAINED = 0.1  # of the ground's texture, by variance
+_MOST_LIGHT = 5.0  # and least: a view five times as bright or as dark is one of a lamp, or of nothing
 _PLAIN = 2.5  # noises of texture below which there is nothing to recognise
 _SHIFT_NOISE_PX = 0.03
 
@@ -73,6 +74,8 @@ def _judged(image: Array, laid: Array, moved: Array, gain: float, noise: float) 
     problem = ""
     if texture > _PLAIN * noise and explained < _LEAST_EXPLAINED:
         problem = f"the background explains {explained:.0%} of the ground seen, {_LEAST_EXPLAINED:.0%} needed"
+    if not 1 / _MOST_LIGHT <= gain <= _MOST_LIGHT:
+        problem = f"the ground shows {gain:.2f} times the contrast that it had"
     return Background(laid, sigma, moved, gain, explained, problem)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,9 @@ def binning_for(rig: RigCalibration, range_m: float) -> int:
     return max(1, int(length_px / _LEAST_LENGTH_PX))
 
 
+Frames = NDArray[Any]  # (n, h, w), counts of one kind or another
+
+
 def binned_rig(rig: RigCalibration, by: int) -> RigCalibration:
     """The rig whose pixels are means of `by` x `by` of the real ones."""
     left, right = (_binned_camera(camera, by) for camera in rig.cameras)
@@ -31,7 +35,7 @@ def binned_rig(rig: RigCalibration, by: int) -> RigCalibration:
     return replace(rig, cameras=(left, right), sensor=sensor)
 
 
-def binned(frames: NDArray[np.uint16], window: Window, by: int) -> tuple[Array, Window]:
+def binned(frames: Frames, window: Window, by: int) -> tuple[Array, Window]:
     """Frames (n, h, w) of a window in coarser pixels, and the window that these fill."""
     u, v = -(-window.u // by), -(-window.v // by)
     width, height = (window.u + window.width) // by - u, (window.v + window.height) // by - v

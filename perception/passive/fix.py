@@ -8,19 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from executive.types import Array, Window
 from perception.chain import Chain
 from perception.checks import as_finite
 from perception.passive.alignment import SIZE, Start
 from perception.passive.background import lay_under
-from perception.passive.binning import binned, binned_rig, binning_for
+from perception.passive.binning import Frames, binned, binned_rig, binning_for
 from perception.passive.drawing import Artist
-from perception.passive.judging import Ground, PassiveFix, PassiveRefusal, judged
+from perception.passive.judging import Ground, PassiveFix, PassiveRefusal, Sun, judged
 from perception.passive.matching import Scene
 from perception.passive.solids import rover_solids
 from perception.passive.ways import RIVAL, approached, chosen, followed
@@ -31,14 +30,6 @@ _LOOSE_M, _LOOSE_RAD = 1.0, math.radians(30.0)
 _MARGIN_M = 0.45  # around the markers: the rest of the rover, its shadow, and ground to know again
 _WIDEN = 0.25  # of the prediction's four sigmas: the margin does the rest
 _ANY_SUN_RAD = np.radians([(az, el) for az in range(-180, 180, 30) for el in (20.0, 35.0, 55.0)])
-
-
-@dataclass(frozen=True)
-class Sun:
-    """Where the sun stands, to a degree or so: azimuth from site x, left positive, and elevation [rad]."""
-
-    azimuth_rad: float
-    elevation_rad: float
 
 
 def empty_window(chain: Chain, expectation: Expectation) -> tuple[Window, Window]:
@@ -53,8 +44,8 @@ def empty_window(chain: Chain, expectation: Expectation) -> tuple[Window, Window
 
 def passive_fix(
     chain: Chain,
-    images: Sequence[NDArray[np.uint16]],
-    backgrounds: Sequence[NDArray[np.uint16]],
+    images: Sequence[Frames],
+    backgrounds: Sequence[Frames],
     windows: tuple[Window, Window],
     expectation: Expectation,
     ground: Ground,
@@ -88,7 +79,7 @@ def passive_fix(
     return judged(coarse, best.aligned, best.scenes, best.details, ground)
 
 
-def _checked(name: str, frames: NDArray[np.uint16], window: Window) -> NDArray[np.uint16]:
+def _checked(name: str, frames: Frames, window: Window) -> Frames:
     as_finite(name, frames, (None, window.height, window.width))
     return np.asarray(frames)
 

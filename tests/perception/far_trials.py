@@ -144,7 +144,7 @@ def run_trial(
     except ValueError as refused:
         found, seconds = Rejection(str(refused), 0), watch.elapsed_s()
     fix = getattr(found, "fix", None)
-    why = found.why if fix is None else setting.expectation.misfit(fix)
+    why = found.why if fix is None else setting.expectation.misfit(fix.state.site_body, fix.covariance)
     if why:
         return Trial(None, None, limit, seconds, why)
     return Trial(_error(setting.said.site_body, fix), fix.covariance, limit, seconds, "")

@@ -26,6 +26,7 @@ from perception.pose import roll_pitch
 from perception.rotation import quat_from_matrix
 from tests.perception.synthetic import Scene, background_e, marker_electrons, observed, sequence, spot
 
+LEAST_OUTLINE = 3  # frames without an LED, of which the geometric tier makes an outline
 PICTURE = (0,)  # of the ground, to watch the head by; this robot's shows none
 
 
@@ -60,6 +61,7 @@ class Robot:
     swapped: dict[int, int] = field(default_factory=dict)
     brightness: float = 1.0
     light_per_frame: float = 0.0
+    outline: bool = True
     shots: list[Shot] = field(default_factory=list)
     pictures: list[Shot] = field(default_factory=list)
     moves: int = 0
@@ -117,7 +119,8 @@ class Robot:
         uv = view.uv_px + 0.12 * self.rng.standard_normal(view.uv_px.shape)
         inside = self.chain.model.inside(view.uv_px)
         uv = np.where(inside[..., None], uv, np.nan)
-        uv[:, list(self.hidden)] = np.nan
+        outline = self.outline and len(shot.leds) >= LEAST_OUTLINE and not any(shot.leds)
+        uv[:, [] if outline else list(self.hidden)] = np.nan
         for a, b in self.swapped.items():
             uv[:, [a, b]] = uv[:, [b, a]]
         return Centres(self.clock.now_s + end, shot, uv, np.full((2, 4), 0.12), self.head_reading())

@@ -11,10 +11,10 @@ import pytest
 from executive.types import Centres, HeadReading, Shot, Window
 from sim_pybullet.error_model import FLOOR_PX, centre_error
 from sim_pybullet.geometric import CENTROID_SIGMA_PX, CentreDeveloper
-from sim_pybullet.ground_marks import GroundMarks
 from sim_pybullet.leds import MarkerOptics, Spot, add_spot
 from sim_pybullet.radiometry import Exposure, calibrated_light, line_spread, spread_sigma_px
 from sim_pybullet.raycast import HeightField
+from sim_pybullet.seeing import CLEAN, Lens, Seeing
 from sim_pybullet.sensor import Sensor
 from tests.sim.sensor_scenes import RIG, flat_ground, picture, scene_at, with_rock
 
@@ -25,7 +25,7 @@ _HEAD = HeadReading(0.0, 0.0, 0.0, False)
 def _developer(seed: int = 1) -> CentreDeveloper:
     field, rng = HeightField(flat_ground()), np.random.default_rng(seed)
     optics = MarkerOptics(RIG, calibrated_light(RIG), field)
-    return CentreDeveloper(optics, _EXPOSURE, GroundMarks(field, rng.spawn(1)[0]), rng)
+    return CentreDeveloper(optics, _EXPOSURE, field, rng)
 
 
 def _sequence(pairs: int) -> tuple[int, ...]:
@@ -180,3 +180,33 @@ def test_stray_light_that_fills_the_wells_is_said_and_half_the_exposure_shows_th
     assert not np.isfinite(full.uv_px).any()
     assert np.isfinite(half.uv_px).all()
     assert half.sigma_px.mean() > 1.5 * clear.sigma_px.mean()
+
+
+def _outlined(scene, windows=None, times=1):
+    answers = _centres(Shot((0,) * 8, windows), scene, times)
+    return np.array([a.uv_px for a in answers]), answers[0].sigma_px[0, 0]
+
+
+def test_an_outline_shows_where_dead_markers_are_as_exactly_as_it_says():
+    scene = replace(scene_at(flat_ground(), 6.0, 0.0), led_alive=(False,) * 4)
+    uv, sigma = _outlined(scene, times=300)
+    found = np.isfinite(uv).all(axis=(1, 2, 3))
+    assert 0.9 < found.mean() < 1.0
+    errors = uv[found] - _true_uv(scene)
+    assert np.abs(errors.mean(axis=0)).max() < 5 * sigma / math.sqrt(300)
+    np.testing.assert_allclose(errors.std(axis=0), sigma, rtol=0.2)
+
+
+@pytest.mark.parametrize(
+    "seeing", [Seeing(daylight=0.1), Seeing(clouds=3.0), Seeing(lenses=(Lens(blur_px=3.0), CLEAN))]
+)
+def test_in_the_dark_in_glare_or_through_dust_there_is_no_outline(seeing):
+    scene = replace(scene_at(flat_ground(), 6.0, 0.0), seeing=seeing)
+    assert np.isnan(_outlined(scene, times=10)[0]).all()
+
+
+def test_a_rover_that_a_window_cuts_has_no_outline():
+    scene = scene_at(flat_ground(), 6.0, 0.0)
+    u, v = np.round(_true_uv(scene)[0, 0]).astype(int)
+    window = Window(int(u) + 10, int(v) - 200, 400, 400)
+    assert np.isnan(_outlined(scene, (window, Window(0, 0, 1024, 1024)), times=10)[0]).all()
