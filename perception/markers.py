@@ -16,12 +16,10 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from executive.types import Array
+from perception.kernels.compiled import plain
+from perception.kernels.light import centre_fit
 from perception.psf import Spread
 
-_FIT_STEPS = 12
-_MAX_STEP_PX = 0.7
-_CONVERGED_PX = 1e-4
-_MAX_WANDER_PX = 2.0
 # Beyond the bound: by how much the centre's variance exceeds it, times SNR^4. Centres alone have 0.16, 0.09,
 # 0.05, 0.05, 0.03 of it at SNR 6, 7, 8, 9, 12 (6000 each, 1.6 to 5 m); poses, whose centres are weighed by
 # their fitted fluxes, ask for 0.09 at 8.2 and 0.05 at 9 (9000 poses).
@@ -145,33 +143,13 @@ def _fit(
     """Maximum-likelihood centre and flux from the peak at (u, v); None if the fit runs away."""
     r = spread.radius_px + 1
     top, left = max(v - r, 0), max(u - r, 0)
-    patch = image[top : v + r + 1, left : u + r + 1].astype(float)
-    weight = 1.0 / sigma[top : v + r + 1, left : u + r + 1].astype(float) ** 2
-    columns, rows = left + np.arange(float(patch.shape[1])), top + np.arange(float(patch.shape[0]))
-    x, y = float(u), float(v)
-    for _ in range(_FIT_STEPS):
-        T = template(spread, columns - x, rows - y)
-        flux = float((weight * T[0] * patch).sum() / (weight * T[0] ** 2).sum())
-        if flux <= 0:
-            return None
-        J = np.stack([T[0].ravel(), -flux * T[1].ravel(), -flux * T[2].ravel()], axis=1)
-        F = J.T @ (J * weight.reshape(-1, 1))
-        step = np.linalg.solve(F, J.T @ (weight * (patch - flux * T[0])).ravel())
-        dx, dy = np.clip(step[1:], -_MAX_STEP_PX, _MAX_STEP_PX)
-        x, y = x + float(dx), y + float(dy)
-        if math.hypot(x - u, y - v) > _MAX_WANDER_PX:
-            return None
-        if max(abs(dx), abs(dy)) < _CONVERGED_PX:
-            break
+    patch = plain(image[top : v + r + 1, left : u + r + 1])
+    weight = plain(sigma[top : v + r + 1, left : u + r + 1]) ** -2
+    x, y, flux, F, found = centre_fit(patch, weight, u - left, v - top, spread.box_px, spread.sigma_px)
+    if not found:
+        return None
     covariance = np.linalg.inv(F)
     snr_squared = flux**2 / covariance[0, 0]
     excess = 1 + _EXCESS_SNR4 / snr_squared**2
     centre = covariance[1:, 1:] * excess + SIGMA_FLOOR_PX**2 * np.eye(2)
-    return Detection(np.array([x, y]), centre, flux, math.sqrt(covariance[0, 0]))
-
-
-def template(spread: Spread, columns_px: Array, rows_px: Array) -> Array:
-    """Shares of light and their slopes along u and v at offsets from the centre, (3, rows, columns)."""
-    pu, pv = spread.profile(columns_px), spread.profile(rows_px)
-    du, dv = spread.profile_slope(columns_px), spread.profile_slope(rows_px)
-    return np.stack([np.outer(pv, pu), np.outer(pv, du), np.outer(dv, pu)])
+    return Detection(np.array([left + x, top + y]), centre, flux, math.sqrt(covariance[0, 0]))

@@ -8,6 +8,12 @@ import numpy as np
 
 from executive.types import Array
 from perception.kernels.compiled import compiled
+from perception.kernels.linear import factor, solve
+
+_FIT_STEPS = 12
+_MAX_STEP_PX = 0.7
+_CONVERGED_PX = 1e-4
+_MAX_WANDER_PX = 2.0
 
 
 @compiled
@@ -45,6 +51,44 @@ def profiles(offsets_px: Array, box_px: float, sigma_px: float) -> tuple[Array, 
 
 
 @compiled
+def add_fit(
+    image: Array,
+    weights: Array,
+    patch: tuple[int, int, int, int],
+    u_px: float,
+    v_px: float,
+    flux: float,
+    box_px: float,
+    sigma_px: float,
+    information: Array,
+    score: Array,
+) -> float:
+    """Add to information (3, 3) and score (3,) of (flux, column, row) what a patch (left, top, width, height)
+    of an image (h, w) [counts] says of a marker at (u, v) in it; returns twice the gain in log likelihood.
+
+    `weights` are the pixels' inverse variances.
+    """
+    left, top, width, height = patch
+    across, across_slope = profiles(np.arange(width) + (left - u_px), box_px, sigma_px)
+    down, down_slope = profiles(np.arange(height) + (top - v_px), box_px, sigma_px)
+    T, gain = np.empty(3), 0.0
+    for j in range(height):
+        for i in range(width):
+            pixel, weight = image[top + j, left + i], weights[top + j, left + i]
+            T[0] = down[j] * across[i]
+            T[1] = -flux * down[j] * across_slope[i]
+            T[2] = -flux * down_slope[j] * across[i]
+            rest = pixel - flux * T[0]
+            gain += weight * (pixel * pixel - rest * rest)
+            for a in range(3):
+                weighted = weight * T[a]
+                score[a] += weighted * rest
+                for b in range(3):
+                    information[a, b] += weighted * T[b]
+    return gain
+
+
+@compiled
 def local_fits(
     images: Array,
     weights: Array,
@@ -62,31 +106,44 @@ def local_fits(
     """
     information, score, gain = np.zeros((len(flux), 3, 3)), np.zeros((len(flux), 3)), 0.0
     height, width = images.shape[1:]
-    T = np.empty(3)
+    side = 2 * reach + 1
     for m in range(len(flux)):
-        if not math.isfinite(uv_px[m, 0] + uv_px[m, 1]):
+        u, v = uv_px[m, 0] - corner_px[0], uv_px[m, 1] - corner_px[1]
+        if not math.isfinite(u + v):
             continue
-        middle_u, middle_v = np.rint(uv_px[m, 0]), np.rint(uv_px[m, 1])
-        left, top = int(middle_u - corner_px[0]) - reach, int(middle_v - corner_px[1]) - reach
-        if left < 0 or top < 0 or left + 2 * reach >= width or top + 2 * reach >= height:
+        left, top = int(np.rint(u)) - reach, int(np.rint(v)) - reach
+        if left < 0 or top < 0 or left + side > width or top + side > height:
             continue
-        steps = np.arange(-reach, reach + 1)
-        across, across_slope = profiles(steps + (middle_u - uv_px[m, 0]), box_px, sigma_px)
-        down, down_slope = profiles(steps + (middle_v - uv_px[m, 1]), box_px, sigma_px)
-        for j in range(2 * reach + 1):
-            for i in range(2 * reach + 1):
-                pixel, weight = images[m, top + j, left + i], weights[m, top + j, left + i]
-                T[0] = down[j] * across[i]
-                T[1] = -flux[m] * down[j] * across_slope[i]
-                T[2] = -flux[m] * down_slope[j] * across[i]
-                rest = pixel - flux[m] * T[0]
-                gain += weight * (pixel * pixel - rest * rest)
-                for a in range(3):
-                    weighted = weight * T[a]
-                    score[m, a] += weighted * rest
-                    for b in range(3):
-                        information[m, a, b] += weighted * T[b]
+        patch, own, pull = (left, top, side, side), information[m], score[m]
+        gain += add_fit(images[m], weights[m], patch, u, v, flux[m], box_px, sigma_px, own, pull)
     return information, score, gain
+
+
+@compiled
+def centre_fit(
+    image: Array, weights: Array, u_px: float, v_px: float, box_px: float, sigma_px: float
+) -> tuple[float, float, float, Array, bool]:
+    """Most likely centre (u, v) and flux of a marker near a peak in an image (h, w), their information (3, 3)
+    as (flux, column, row), and whether there is light that stays near the peak."""
+    patch = (0, 0, image.shape[1], image.shape[0])
+    u, v, flux, F = u_px, v_px, 0.0, np.zeros((3, 3))
+    for _ in range(_FIT_STEPS):
+        F, step = np.zeros((3, 3)), np.zeros(3)
+        add_fit(image, weights, patch, u, v, 0.0, box_px, sigma_px, F, step)
+        flux = step[0] / F[0, 0]
+        F, step = np.zeros((3, 3)), np.zeros(3)
+        add_fit(image, weights, patch, u, v, flux, box_px, sigma_px, F, step)
+        L = F.copy()
+        factor(L)
+        solve(L, step)
+        du = min(max(step[1], -_MAX_STEP_PX), _MAX_STEP_PX)
+        dv = min(max(step[2], -_MAX_STEP_PX), _MAX_STEP_PX)
+        u, v = u + du, v + dv
+        if not (flux > 0 and math.hypot(u - u_px, v - v_px) <= _MAX_WANDER_PX):
+            return u, v, flux, F, False
+        if max(abs(du), abs(dv)) < _CONVERGED_PX:
+            break
+    return u, v, flux, F, True
 
 
 @compiled
