@@ -25,17 +25,18 @@ def draw(tables: dict[str, list[Row]], path: Path) -> None:
         ranges = [row.range_m for row in rows]
         bound = [scale * getattr(row, f"{name}_bound_{suffix}") for row in rows]
         axis.loglog(ranges, bound, color="0.75", lw=7, solid_capstyle="round", label="Cramér–Rao bound")
-        for row, value in zip(rows, bound, strict=True):
-            label = f"N = {row.demand.pairs}"
-            axis.annotate(label, (row.range_m, value), (6, -14), textcoords="offset points", fontsize=8)
         for table, lines in tables.items():
             style, colour, label = _MARKS[table]
             error = [scale * getattr(row, f"{name}_{suffix}") for row in lines]
             there = [row.range_m for row in lines]
             axis.loglog(there, error, style, color=colour, label=f"RMS error, {label}")
-        axis.set_xticks(ranges, [f"{r:g}" for r in ranges])
+        axis.set_xticks(ranges, [f"{row.range_m:g}\n{row.demand.pairs}" for row in rows], fontsize=9)
         axis.minorticks_off()
-        axis.set(xlabel="range [m]", ylabel=f"{name} [{unit}]", title=name.capitalize())
+        axis.set(
+            xlabel="range [m], and below it the pairs N of each LED",
+            ylabel=f"{name} [{unit}]",
+            title=name.capitalize(),
+        )
         axis.margins(x=0.1, y=0.1)
         axis.grid(alpha=0.3)
         axis.legend()

@@ -268,12 +268,14 @@ LEFT, RIGHT = 0, 1
 class Shot:
     """A sequence of stereo exposures: per frame the LEDs lit (bit i = marker i), then both windows.
 
-    `windows` None reads both full frames. `cadence_s` is the time from one frame to the next.
+    `windows` None reads both full frames. `cadence_s` is the time from one frame to the next, `exposure` the
+    time for which a frame gathers light, of that to which the cameras were set for sunlit ground.
     """
 
     leds: tuple[int, ...]
     windows: tuple[Window, Window] | None = None
     cadence_s: float = 0.5
+    exposure: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -306,6 +308,7 @@ class Centres:
     Shapes: `uv_px` (2 cameras, 4 markers, 2), NaN where not detected; `sigma_px` (2, 4). `ground` is what a
     picture (one frame, no LED lit) shows of the landscape, left and right; None for any other shot. Three and
     more frames without an LED are for outlines: `uv_px` is then where the rover's outline puts the markers.
+    `saturated` says of each camera whether there was too much light to see anything.
     """
 
     time_s: float
@@ -314,6 +317,7 @@ class Centres:
     sigma_px: Array
     head: HeadReading
     ground: tuple[Landmarks, Landmarks] | None = None
+    saturated: tuple[bool, bool] = (False, False)
 
 
 @dataclass(frozen=True, eq=False)

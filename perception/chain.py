@@ -8,17 +8,21 @@ with known accuracy; as parts of the state their errors reach the covariance wit
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from executive.rig import RigCalibration
 from executive.types import Array, PoseEstimate, Vec2
-from perception.body import Transform, plc_in_body, points_in_body
+from perception.body import Transform, kernel_cabin, plc_in_body
 from perception.camera import StereoModel
-from perception.head import head_rates, site_ih
-from perception.rotation import exp_map, matrix_from_quat, skew
+from perception.head import kernel_head, site_ih
+from perception.kernels.chain import STATE_SIZE as STATE_SIZE
+from perception.kernels.chain import Cabin, Head, project, project_points
+from perception.kernels.compiled import plain
+from perception.kernels.optics import Optics
+from perception.rotation import exp_map, matrix_from_quat
 
-STATE_SIZE = 10
 _SIGMA_FLOOR_RAD = 1e-7  # an encoder said to be perfect must not make the normal equations infinite
 
 
@@ -29,6 +33,11 @@ class ChainState:
     site_body: Transform
     head_rad: Vec2
     joints_rad: Vec2
+
+    @property
+    def angles_rad(self) -> Array:
+        """Pan, tilt, arm, cabin (4,)."""
+        return np.array([*self.head_rad, *self.joints_rad])
 
     def moved(self, step: Array) -> ChainState:
         """This state changed by a step of ten (see the module's docstring)."""
@@ -48,7 +57,12 @@ class Chain:
 
     @classmethod
     def of(cls, rig: RigCalibration) -> Chain:
-        return cls(rig, StereoModel.of(rig), np.array(rig.markers.positions_plc_m))
+        return cls(rig, StereoModel.of(rig), plain(rig.markers.positions_plc_m))
+
+    @cached_property
+    def kernel_rig(self) -> tuple[Optics, Head, Cabin, Array]:
+        """What the kernels take of the rig."""
+        return self.model.optics, kernel_head(self.rig.head), kernel_cabin(self.rig.cabin), self.markers_plc_m
 
     def site_ih(self, head_rad: Vec2) -> Transform:
         """Pose of the head in site (executive.rig.HeadCalibration)."""
@@ -64,29 +78,17 @@ class Chain:
 
     def project(self, state: ChainState) -> tuple[Array, Array]:
         """Marker pixels (2, n, 2) and their Jacobian by the state (2, n, 2, 10)."""
-        in_body, by_joints = points_in_body(self.rig.cabin, self.markers_plc_m, *state.joints_rad)
-        R = state.site_body.rotation
-        arms = in_body @ R.T
-        return self.project_points(
-            state.site_body.position_m + arms, state.head_rad, arms, np.einsum("ij,njk->nik", R, by_joints)
-        )
+        body = state.site_body
+        place = plain(body.rotation), plain(body.position_m), state.angles_rad
+        return project(*self.kernel_rig, *place)
 
     def project_points(
         self, points_site_m: Array, head_rad: Vec2, arms_site_m: Array, by_joints: Array
     ) -> tuple[Array, Array]:
         """Pixels and Jacobian of points (n, 3) in site, at arms (n, 3) from the body, by_joints (n, 3, 2)."""
-        head = self.site_ih(head_rad)
-        by_pan, by_tilt = head_rates(self.rig.head, head_rad)
-        from_mast = points_site_m - head.position_m
-        uv, by_ih = self.model.project_with_jacobian(from_mast @ head.rotation)
-        by_state = np.empty((len(points_site_m), 3, STATE_SIZE))
-        by_state[:, :, :3] = head.rotation.T
-        by_state[:, :, 3:6] = -head.rotation.T @ skew(arms_site_m)
-        by_state[:, :, 6] = from_mast @ by_pan
-        by_state[:, :, 7] = from_mast @ by_tilt
-        by_state[:, :, 8:] = head.rotation.T @ by_joints
-        J: Array = by_ih @ by_state
-        return uv, J
+        head = kernel_head(self.rig.head)
+        of_body = plain(arms_site_m), plain(by_joints)
+        return project_points(self.model.optics, head, plain(points_site_m), *head_rad, *of_body)
 
     def encoder_sigma_rad(self) -> Array:
         """Standard deviations of pan, tilt, arm, cabin; a uniform error of half-width a has a / sqrt(3)."""
@@ -94,6 +96,11 @@ class Chain:
         uniform = np.array([head.pan_accuracy_rad, head.tilt_accuracy_rad]) / np.sqrt(3.0)
         sigma = np.concatenate([uniform, [cabin.joint_sigma_rad] * 2])
         return np.asarray(np.maximum(sigma, _SIGMA_FLOOR_RAD), dtype=np.float64)
+
+    @cached_property
+    def encoder_weight(self) -> Array:
+        """Their inverse variances (4,)."""
+        return self.encoder_sigma_rad() ** -2
 
     def state_covariance(self, pose_covariance: Array) -> Array:
         """Covariance (10, 10) of a state whose body pose has this (6, 6) one."""

@@ -15,6 +15,7 @@ expected Euler characteristic of a Gaussian field (Adler and Taylor, Random Fiel
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.special import ndtri_exp
@@ -32,15 +33,22 @@ _FINE_PX = 0.1
 
 
 def joint_threshold(
-    chain: Chain, state: ChainState, readings: Readings, spread: Spread, volume: float, rate: float
+    chain: Chain,
+    state: ChainState,
+    readings: Readings,
+    spread: Spread,
+    volume: float,
+    rate: float,
+    cameras: Sequence[int] = (0, 1),
 ) -> float:
-    """Joint SNR that noise alone exceeds at `rate` in a search of `volume` [m2 rad] around a state.
+    """Joint SNR that noise alone exceeds at `rate` in a search of `volume` [m2 rad] around a state, in
+    the images of these cameras.
 
     ValueError unless the volume is positive and the rate in (0, 1).
     """
     if not (math.isfinite(volume) and volume > 0 and 0 < rate < 1):
         raise ValueError(f"got a volume of {volume} at rate {rate}, expected it positive, in (0, 1)")
-    unit = unit_information(chain, state, spread)
+    unit = unit_information(chain, state, spread, cameras)
     read = _read(state, readings)
     snr = _FIRST_GUESS
     for _ in range(_ROUNDS):
@@ -48,10 +56,12 @@ def joint_threshold(
     return snr
 
 
-def unit_information(chain: Chain, state: ChainState, spread: Spread) -> Array:
+def unit_information(
+    chain: Chain, state: ChainState, spread: Spread, cameras: Sequence[int] = (0, 1)
+) -> Array:
     """What images of joint SNR 1 say of the state (10, 10), all markers alike."""
     _, J = chain.project(state)
-    flat = J.reshape(-1, STATE_SIZE)
+    flat = J[list(cameras)].reshape(-1, STATE_SIZE)
     offsets = np.arange(-spread.radius_px, spread.radius_px, _FINE_PX)  # a marker lies anywhere in its pixel
     sharpness = (spread.profile_slope(offsets) ** 2).sum() / (spread.profile(offsets) ** 2).sum()
     information: Array = sharpness * flat.T @ flat / (len(flat) / 2)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from executive.types import Array
 
 _LEAK_FACTOR = 1.15
+_NO_WORD = 1e6  # counts, of noise: a pixel that says nothing
 _ROUNDING = 1e-3  # counts, of single precision: an even image is not all outliers
 
 
@@ -32,6 +33,14 @@ class Difference:
     sigma: NDArray[np.float32]
     reference: NDArray[np.float32]
     pairs: int
+
+    def without(self, pixels: NDArray[np.bool_]) -> Difference:
+        """The same with nothing said in some pixels (h, w)."""
+        if not pixels.any():
+            return self
+        images, sigma = self.images.copy(), self.sigma.copy()
+        images[:, pixels], sigma[:, pixels] = 0.0, _NO_WORD
+        return replace(self, images=images, sigma=sigma)
 
 
 def led_sequence(markers: int, pairs: int, skip: frozenset[int] = frozenset()) -> tuple[int, ...]:

@@ -3,7 +3,7 @@
 Coarse search (perception.search), then the most likely pose from each of the best places
 (perception.likelihood). A pose is accepted when its joint SNR exceeds what noise alone shows anywhere in the
 region at the false-alarm rate, when nothing else explains the images as well, and when what the images say
-at each marker agrees with it.
+at each marker agrees with it. Where not all markers shine, LEDs may be mixed up: that is tried too.
 """
 
 from __future__ import annotations
@@ -17,126 +17,144 @@ from numpy.typing import NDArray
 
 from executive.types import Array, Vec2
 from perception.chain import Chain, ChainState
-from perception.chance_finds import joint_threshold
+from perception.choice import JointFix, Rejection, faces_cameras, noted
 from perception.difference import Difference
-from perception.exposure import emission
-from perception.likelihood import Evidence, Likely, most_likely, observed_covariance
-from perception.markers import filter_snr
-from perception.plausibility import Rejection, faces_cameras
-from perception.pose import Fix, Readings, Sighting, chi2_limit
+from perception.identity import exchanges
+from perception.joint_search import JointScene, alike, relative_gain, sighting_without_centres
+from perception.likelihood import Evidence, Likely, most_likely
+from perception.pose import Fix, Readings, chi2_limit
+from perception.posterior import posterior
 from perception.prediction import Expectation
 from perception.psf import Spread
-from perception.search import FilterImages, Hypothesis, search
+
+__all__ = ["FALSE_ALARM_RATE", "JointFix", "joint_fix", "relative_gain"]
 
 # Of the whole region: a third of the 1e-3 that is claimed. The threshold keeps its theory's leading term only
 # and on 1200 regions of white noise 1.0 to 2.7 times as many climbed as high as it says.
 FALSE_ALARM_RATE = 3e-4
-_STARTS = 12
-_COARSE_LOSS = 3.0  # of joint SNR: more than the lattice can cost the best pose over another
 _GATE = 0.9999
+_FEW_GATE = 0.99  # where two markers must do
 _RIVAL = 6.0  # twice the difference in log likelihood below which another pose explains the images as well
-_APART_PX = 1.0  # poses whose markers are farther apart than this are different explanations
 _LEAST_MARKER_SNR = 2.5  # of one marker in both cameras, to count as shining once the pose is known
 _LEAST_MARKERS = 2
-
-
-@dataclass(frozen=True, eq=False)
-class JointFix:
-    """An accepted pose, the markers that shine in it, and `note`: what stood out from what.
-
-    `detected_px` (2, n, 2) is where the images alone pull each centre.
-    """
-
-    fix: Fix
-    markers: int
-    detected_px: Array
-    note: str
+_GLOW = 0.35  # of the brightest marker's flux: less may be an LED that is dim, or none
+_NOISE_RATE = 0.05  # of noise alone, in the search for what the markers that do not shine at a pose may show
+_SURE = 3.0  # above that, the joint SNR at which markers as bright would hardly stay below it
 
 
 def joint_fix(
     chain: Chain,
-    cameras: Sequence[Difference],
+    cameras: Sequence[Difference | None],
     corners_px: Sequence[tuple[int, int]],
     spread: Spread,
     expectation: Expectation,
     tilt_rad: Vec2,
     widen: float = 1.0,
 ) -> JointFix | Rejection:
-    """The one pose in the expectation's region that the difference images show, or why there is none."""
-    filtered = [
-        FilterImages(
-            np.stack([filter_snr(i, s, spread) for i, s in zip(c.images, c.sigma, strict=True)]), corner
-        )
-        for c, corner in zip(cameras, corners_px, strict=True)
-    ]
-    starts, volume = search(chain, filtered, expectation, spread, widen, _STARTS)
-    evidence = Evidence.of(cameras, corners_px, spread, relative_gain(chain, expectation.state))
-    sighting = _sighting(chain, expectation, tilt_rad)
-    readings = Readings.of(chain, sighting, expectation.surface)
-    threshold = joint_threshold(chain, expectation.state, readings, spread, volume, FALSE_ALARM_RATE)
-    likely = _climb_all(chain, evidence, readings, starts, _flux_unit(cameras, spread))
+    """The one pose in the expectation's region that the difference images show, or why there is none.
+
+    A blind camera is None: the pose then comes from the other alone, and asks for three markers.
+    """
+    seeing = [camera for camera, one in enumerate(cameras) if one is not None]
+    images = [_nothing(len(chain.markers_plc_m)) if one is None else one for one in cameras]
+    readings = Readings.of(chain, sighting_without_centres(chain, expectation, tilt_rad), expectation.surface)
+    scene = JointScene(chain, corners_px, spread, expectation, readings, widen, seeing)
+    found = _find(scene, images)
+    if isinstance(found, Rejection) or found.bright.all():
+        return found if isinstance(found, Rejection) else _gated(scene, found)
+    swapped, said = _exchanged(scene, images, found)
+    if swapped is not None:
+        return noted(_gated(scene, swapped), said)
+    lack = _too_few(scene, images, found)
+    return Rejection(lack, found.shining) if lack else _gated(scene, found)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """The best pose of a search: `lead` is how much more likely it is than any other, twice the logarithm;
+    `threshold` the joint SNR that it passed, `shared` whether all markers have one flux."""
+
+    best: Likely
+    shared: bool
+    lead: float
+    threshold: float
+    volume: float
+    evidence: Evidence
+
+    @property
+    def shining(self) -> int:
+        return int((self.best.flux_counts > 0).sum())
+
+    @property
+    def bright(self) -> NDArray[np.bool_]:
+        """Which markers (n,) are beyond doubt."""
+        flux = self.best.flux_counts
+        bright: NDArray[np.bool_] = flux > _GLOW * flux.max()
+        return bright
+
+
+def _find(scene: JointScene, images: Sequence[Difference]) -> _Found | Rejection:
+    """The pose that the images show most clearly, if more clearly than noise would."""
+    likely, volume = scene.climbed(images)
+    threshold = scene.threshold(volume, FALSE_ALARM_RATE)
     shown = [one for one in likely if one.snr >= threshold]
     if not shown:
         strongest = max((one.snr for one in likely), default=0.0)
         return Rejection(f"joint SNR {strongest:.1f} of all markers, {threshold:.1f} needed", 0)
-    nearest = max(shown, key=lambda one: _worth(expectation, one))
-    rivals = [_worth(expectation, one) for one in likely if one is not nearest]
-    lead = _worth(expectation, nearest) - max(rivals, default=-math.inf)
-    best, shared = _with_own_fluxes(chain, evidence, readings, nearest)
-    shining = int((best.flux_counts > 0).sum())
-    if shining < _LEAST_MARKERS:
-        return Rejection(f"{shining} of {len(best.flux_counts)} markers shine at the best pose", shining)
-    best = replace(best, covariance=observed_covariance(chain, evidence, readings, best, shared))
-    note = f"joint SNR {best.snr:.1f}, {threshold:.1f} needed"
-    return _gated(chain, best, lead, note)
+    nearest = max(shown, key=lambda one: _worth(scene.expectation, one))
+    rivals = [_worth(scene.expectation, one) for one in likely if one is not nearest]
+    lead = _worth(scene.expectation, nearest) - max(rivals, default=-math.inf)
+    evidence = scene.evidence(images)
+    best, shared = _with_own_fluxes(scene.chain, evidence, scene.readings, nearest)
+    return _Found(best, shared, lead, threshold, volume, evidence)
 
 
-def relative_gain(chain: Chain, state: ChainState) -> Array:
-    """Brightness (2, n) expected of each marker relative to their mean: nearer ones and those faced shine."""
-    plc = chain.site_plc(state)
-    cameras = chain.site_ih(state.head_rad).apply(chain.model.position_ih_m)
-    to_camera = cameras[:, None] - chain.markers_site(state)[None]
-    ranges = np.linalg.norm(to_camera, axis=-1)
-    cosines = to_camera @ plc.rotation[:, 2] / ranges
-    facing = np.array([[emission(chain.rig.markers.emission, float(c)) for c in row] for row in cosines])
-    power = np.maximum(facing, 1e-3) / ranges**2
-    gain: Array = power / power.mean()
-    return gain
+def _exchanged(scene: JointScene, images: Sequence[Difference], found: _Found) -> tuple[_Found | None, str]:
+    """A pose at which all markers shine once one or two couples of LEDs are exchanged, if that explains the
+    images better, and which couples these are."""
+    better: tuple[_Found | None, str] = None, ""
+    least = found.best.snr**2 + _RIVAL
+    for order, said in exchanges(len(found.bright)):
+        moved = [(m, at) for m, at in enumerate(order) if m != at]
+        if any(found.bright[m] and found.bright[at] for m, at in moved):
+            continue
+        other = _find(scene, [replace(i, images=i.images[order], sigma=i.sigma[order]) for i in images])
+        if isinstance(other, _Found) and other.bright.all() and other.best.snr**2 > least:
+            better, least = (other, said), other.best.snr**2
+    return better
 
 
-def _sighting(chain: Chain, expectation: Expectation, tilt_rad: Vec2) -> Sighting:
-    """The readings that go with the images; the centres stay open."""
-    n = len(chain.markers_plc_m)
-    state = expectation.state
-    nothing = np.full((2, n, 2), np.nan)
-    return Sighting(nothing, np.full((2, n, 2, 2), np.nan), state.head_rad, state.joints_rad, tilt_rad)
+def _too_few(scene: JointScene, images: Sequence[Difference], found: _Found) -> str:
+    """Why the markers that shine at the best pose are too few for it; empty if they are not.
+
+    Any two of a plate whose LEDs are mixed up fit a rover that stands elsewhere, and a third may seem to glow
+    there. So two must be strong enough that others as bright would show, and the others must shine nowhere
+    else.
+    """
+    bright, best = found.bright, found.best
+    said = f"{found.shining} of {len(bright)} markers shine at the best pose"
+    if bright.sum() > _LEAST_MARKERS:
+        return ""
+    if found.shining < _LEAST_MARKERS or len(scene.seeing) < 2:
+        return said
+    noise = scene.threshold(found.volume, _NOISE_RATE)
+    if best.snr < noise + _SURE:
+        return f"{said}, joint SNR {best.snr:.1f}, {noise + _SURE:.1f} needed for so few"
+    others, _ = scene.climbed([_only(one, ~bright) for one in images])
+    elsewhere = any(one.snr > noise and not alike(scene.chain, one, best) for one in others)
+    return f"{said}, and the others elsewhere" if elsewhere else ""
 
 
-def _flux_unit(cameras: Sequence[Difference], spread: Spread) -> float:
-    """Flux [counts] of a marker whose filter SNR is 1."""
-    sigma = np.median([float(np.median(s)) for c in cameras for s in c.sigma])
-    return float(sigma / np.sqrt(spread.energy))
+def _nothing(markers: int) -> Difference:
+    """What a blind camera says."""
+    blank = np.zeros((markers, 1, 1), np.float32)
+    return Difference(blank, np.full_like(blank, np.inf), blank[0], 0)
 
 
-def _climb_all(
-    chain: Chain, evidence: Evidence, readings: Readings, starts: Sequence[Hypothesis], flux_unit: float
-) -> list[Likely]:
-    """The distinct poses that the starts lead to."""
-    markers = len(chain.markers_plc_m)
-    reached: list[Likely] = []
-    for start in starts:
-        if start.snr <= max(starts[0].snr - _COARSE_LOSS, 0.0):
-            break
-        flux = np.full(markers, start.snr / np.sqrt(2 * markers) * flux_unit)
-        likely = most_likely(chain, evidence, readings, start.state, flux, shared=True)
-        if likely is not None and not any(_alike(chain, likely, other) for other in reached):
-            reached.append(likely)
-    return reached
-
-
-def _alike(chain: Chain, one: Likely, other: Likely) -> bool:
-    apart = chain.project(one.state)[0] - chain.project(other.state)[0]
-    return float(np.abs(apart).max()) < _APART_PX
+def _only(images: Difference, markers: NDArray[np.bool_]) -> Difference:
+    """The images of some markers, nothing of the others."""
+    sigma = np.where(markers[:, None, None], images.sigma, np.float32(np.inf))
+    return replace(images, images=images.images * markers[:, None, None], sigma=sigma)
 
 
 def _with_own_fluxes(
@@ -162,33 +180,46 @@ def _worth(expectation: Expectation, one: Likely) -> float:
     return one.snr**2 - expectation.distance2(one.state.site_body)
 
 
-def _gated(chain: Chain, best: Likely, lead: float, note: str) -> JointFix | Rejection:
+def _gated(scene: JointScene, found: _Found) -> JointFix | Rejection:
     """The pose as a fix, unless the images contradict it or something else explains them as well."""
+    best = found.best
     alive = best.flux_counts > 0
-    fix, detected = _as_fix(chain, best, alive)
+    gate = _GATE if found.bright.sum() > _LEAST_MARKERS else _FEW_GATE
+    fix, detected = _as_fix(scene, best, alive)
     seen = int(alive.sum())
     if not best.converged:
         return Rejection(f"no best pose after {best.steps} steps", seen)
-    if fix.chi2 > chi2_limit(fix.dof, _GATE):
+    if fix.chi2 > chi2_limit(fix.dof, gate):
         return Rejection(f"the images pull the markers apart: chi-square {fix.chi2:.0f} of {fix.dof}", seen)
-    if lead < _RIVAL:
-        return Rejection(f"two poses explain the images, {lead:.1f} apart in log likelihood", seen)
-    if not faces_cameras(chain, fix):
+    if found.lead < _RIVAL:
+        return Rejection(f"two poses explain the images, {found.lead:.1f} apart in log likelihood", seen)
+    if not faces_cameras(scene.chain, fix):
         return Rejection("the markers would show their backs", seen)
-    return JointFix(fix, seen, detected, note)
+    note = f"joint SNR {best.snr:.1f}, {found.threshold:.1f} needed"
+    state, covariance = posterior(scene.chain, found.evidence, scene.readings, best, found.shared)
+    return _settled(scene.chain, JointFix(fix, seen, detected, note), state, covariance)
 
 
-def _as_fix(chain: Chain, best: Likely, alive: NDArray[np.bool_]) -> tuple[Fix, Array]:
+def _settled(chain: Chain, found: JointFix, state: ChainState, covariance: Array) -> JointFix:
+    """The same fix at the mean of what the images allow instead of at the peak."""
+    uv, _ = chain.project(state)
+    residual = np.where(np.isfinite(found.detected_px), found.detected_px - uv, np.nan)
+    fix = replace(found.fix, state=state, covariance=covariance, reprojected_px=uv, residual_px=residual)
+    return replace(found, fix=fix)
+
+
+def _as_fix(scene: JointScene, best: Likely, alive: NDArray[np.bool_]) -> tuple[Fix, Array]:
     """The fix and the centres that the images alone would have.
 
     Chi-square is that of the likelihood's score at the pose, which is exact also where a single centre is
     far too faint to be a measurement of its own.
     """
-    uv, _ = chain.project(best.state)
-    information, score = best.local.information[:, alive, 1:, 1:], best.local.score[:, alive, 1:]
+    uv, _ = scene.chain.project(best.state)
+    used = np.ix_(np.array(scene.seeing), np.flatnonzero(alive))
+    information, score = best.local.information[used][..., 1:, 1:], best.local.score[used][..., 1:]
     pull = np.linalg.solve(information + 1e-12 * np.eye(2), score[..., None])[..., 0]
     residual = np.full_like(uv, np.nan)
-    residual[:, alive] = pull
+    residual[used] = pull
     chi2 = float((pull * score).sum()) + best.readings_chi2
     readings = 4 + 2 + 1  # encoders, inclinometers, the surface
     dof = score.size + readings - 10

@@ -9,20 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from executive.types import Array
+from perception.body import Transform
 from perception.chain import STATE_SIZE, Chain, ChainState
 from perception.difference import Difference
+from perception.kernels.climb import Place, Shown, Task, climbed, point_at
+from perception.kernels.compiled import plain
+from perception.kernels.linear import inverted
 from perception.pose import Readings
 from perception.psf import Spread
 
-_MAX_STEPS = 100
-_MAX_STEP_PX = 0.7
 _PROBE_SIGMAS = 0.04
-_CONVERGED_GAIN = 1e-4  # of twice the log likelihood: a hundredth of a sigma
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,10 +46,17 @@ class Evidence:
     ) -> Evidence:
         pad = _radius(spread)
         rim = ((0, 0), (pad, pad), (pad, pad))
-        left, right = (np.pad(c.images.astype(np.float64), rim) for c in cameras)
-        weights = [np.pad(1.0 / c.sigma.astype(np.float64) ** 2, rim) for c in cameras]
-        corners = [np.array(corner) - pad for corner in corners_px]
-        return cls((left, right), (weights[0], weights[1]), (corners[0], corners[1]), spread, gain)
+        left, right = (np.pad(plain(c.images), rim) for c in cameras)
+        weights = [np.pad(plain(c.sigma) ** -2, rim) for c in cameras]
+        corners = [plain(corner) - pad for corner in corners_px]
+        return cls((left, right), (weights[0], weights[1]), (corners[0], corners[1]), spread, plain(gain))
+
+    @cached_property
+    def shown(self) -> Shown:
+        """The same for the kernels."""
+        box_px, sigma_px = self.spread.box_px, self.spread.sigma_px
+        corners = np.stack(self.corners_px)
+        return Shown(self.images, self.weights, corners, self.gain, box_px, sigma_px, _radius(self.spread))
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,159 +90,49 @@ def most_likely(
     chain: Chain, evidence: Evidence, readings: Readings, start: ChainState, flux_counts: Array, shared: bool
 ) -> Likely | None:
     """Climb the likelihood from `start`; `shared` ties all markers to one flux. None if no light is found."""
-    flux = np.where(flux_counts > 0, flux_counts, 0.0)
-    groups = _groups(flux, shared)
-    state = start
-    at = _Point.of(chain, evidence, readings, state, flux, groups)
-    damping, converged, count = 1e-2, False, 0
-    for count in range(1, _MAX_STEPS + 1):  # noqa: B007 - reported
-        whole = at.step(damping)
-        gain_ahead = float(at.gradient @ whole)
-        step = _limited(whole, at.by_state)
-        moved = state.moved(step[:STATE_SIZE])
-        lighter = flux + groups @ step[STATE_SIZE:]
-        if (lighter < 0).any() or not lighter.any():
-            lighter = np.maximum(lighter, 0.2 * flux)
-        there = _Point.of(chain, evidence, readings, moved, lighter, groups)
-        gained = there.value - at.value
-        if gained > 0:
-            state, flux, at = moved, lighter, there
-        if gain_ahead < _CONVERGED_GAIN:
-            converged = True
-            break
-        damping = damping / 4 if gained > 0.75 * gain_ahead else max(4 * damping, 0.1)
-    if not np.isfinite(at.value) or not flux.any():
+    flux = plain(np.where(flux_counts > 0, flux_counts, 0.0))
+    task = task_of(chain, evidence, readings, flux, shared)
+    place, at, steps, converged = climbed(task, place_of(start, flux))
+    if not np.isfinite(at.value) or not place.flux_counts.any():
         return None
-    covariance: Array = np.asarray(np.linalg.inv(at.information)[:6, :6], dtype=np.float64)
-    snr = float(np.sqrt(max(at.value, 0.0)))
-    return Likely(state, flux, covariance, snr, at.local, at.readings_chi2, count, converged)
+    pan, tilt, arm, cabin = place.angles_rad.tolist()
+    state = ChainState(Transform(place.rotation, place.position_m), (pan, tilt), (arm, cabin))
+    local = Local(at.local_information, at.local_score, at.local_gain)
+    covariance, snr = inverted(at.information, 6), float(np.sqrt(max(at.value, 0.0)))
+    return Likely(state, place.flux_counts, covariance, snr, local, at.readings_chi2, steps, converged)
 
 
-def observed_covariance(
+def observed_information(
     chain: Chain, evidence: Evidence, readings: Readings, at: Likely, shared: bool
 ) -> Array:
-    """Covariance (6, 6) of the body pose from the likelihood's own curvature, by central differences.
+    """Information (10 + fluxes, square) from the likelihood's own curvature, by central differences.
 
     Of faint light each image has its luck; the curvature knows it, the expected information does not. That
     one is taken where the likelihood is not curved downwards in all directions.
     """
-    groups = _groups(at.flux_counts, shared)
+    task = task_of(chain, evidence, readings, at.flux_counts, shared)
 
     def gradient(step: Array) -> Array:
-        flux = at.flux_counts + groups @ step[STATE_SIZE:]
-        moved = at.state.moved(step[:STATE_SIZE])
-        return _Point.of(chain, evidence, readings, moved, flux, groups).gradient
+        flux = at.flux_counts + task.groups @ step[STATE_SIZE:]
+        return point_at(task, place_of(at.state.moved(step[:STATE_SIZE]), flux)).gradient
 
-    expected = _Point.of(chain, evidence, readings, at.state, at.flux_counts, groups).information
+    expected = point_at(task, place_of(at.state, at.flux_counts)).information
     steps = np.diag(_PROBE_SIGMAS / np.sqrt(np.diag(expected)))
     H = np.stack([(gradient(-s) - gradient(s)) / (2 * s.max()) for s in steps])
     H = (H + H.T) / 2
-    curved = bool(np.linalg.eigvalsh(H)[0] > 0)
-    information = _with_tails(H if curved else expected, readings, at)
-    covariance: Array = np.asarray(np.linalg.inv(information)[:6, :6], dtype=np.float64)
-    return (covariance + covariance.T) / 2
+    return H if np.linalg.eigvalsh(H)[0] > 0 else expected
 
 
-def _with_tails(information: Array, readings: Readings, at: Likely) -> Array:
-    """The information (n, n) whose inverse is the covariance of a likelihood with the tails that light has.
-
-    Twice the log likelihood falls off as snr^2 exp(-q), q quadratic in the d directions that the images
-    determine, not as snr^2 (1 - q). To first order in 1 / snr^2 the covariance of such a peak is that of its
-    curvature times 1 + (d + 2) / snr^2.
-    """
-    read = np.zeros_like(information)
-    readings.add_to(at.state, read[:STATE_SIZE, :STATE_SIZE], np.zeros(STATE_SIZE))
-    images = information - read
-    fluxes = len(information) - STATE_SIZE
-    directions = float(np.trace(np.linalg.solve(information, images))) - fluxes
-    return np.asarray(read + images / (1 + (directions + 2) / at.snr**2), dtype=np.float64)
+def task_of(chain: Chain, evidence: Evidence, readings: Readings, flux_counts: Array, shared: bool) -> Task:
+    """Everything that a state is held against; a marker without flux stays dark."""
+    groups = plain(_groups(flux_counts, shared))
+    return Task(*chain.kernel_rig, readings.measured, evidence.shown, groups)
 
 
-@dataclass(frozen=True, eq=False)
-class _Point:
-    """The log likelihood at a state: twice its value, gradient and information over (state, fluxes)."""
-
-    value: float
-    gradient: Array
-    information: Array
-    by_state: Array
-    local: Local
-    readings_chi2: float
-
-    @classmethod
-    def of(
-        cls,
-        chain: Chain,
-        evidence: Evidence,
-        readings: Readings,
-        state: ChainState,
-        flux: Array,
-        groups: Array,
-    ) -> _Point:
-        uv, J = chain.project(state)
-        local = local_fits(evidence, uv, flux)
-        size = STATE_SIZE + groups.shape[1]
-        G = np.zeros((*uv.shape[:2], 3, size))
-        G[..., 0, STATE_SIZE:] = evidence.gain[..., None] * groups
-        G[..., 1:, :STATE_SIZE] = J
-        flat = G.reshape(-1, size)
-        information = flat.T @ (local.information @ G).reshape(-1, size)
-        gradient = flat.T @ local.score.reshape(-1)
-        H, g = np.zeros((STATE_SIZE, STATE_SIZE)), np.zeros(STATE_SIZE)
-        chi2 = readings.add_to(state, H, g)
-        information[:STATE_SIZE, :STATE_SIZE] += H
-        gradient[:STATE_SIZE] += g
-        return cls(local.gain - chi2, gradient, information, J, local, chi2)
-
-    def step(self, damping: float) -> Array:
-        damped = self.information + damping * np.diag(np.diag(self.information) + 1e-12)
-        return np.asarray(np.linalg.solve(damped, self.gradient), dtype=np.float64)
-
-
-def local_fits(evidence: Evidence, uv_px: Array, flux: Array) -> Local:
-    """Each marker's fit of (flux, column, row) at pixels (2, n, 2), fluxes (n,) [counts]."""
-    radius, spread = _radius(evidence.spread), evidence.spread
-    offsets = np.arange(-radius, radius + 1)
-    information, score = np.zeros((2, len(flux), 3, 3)), np.zeros((2, len(flux), 3))
-    total = 0.0
-    for c in (0, 1):
-        middle = np.rint(np.nan_to_num(uv_px[c], nan=-1e6)).astype(int)
-        patch, weight = _patches(evidence, c, middle, offsets)
-        du, dv = (offsets + (middle[:, i] - uv_px[c, :, i])[:, None] for i in (0, 1))
-        pu, pv, su, sv = (
-            spread.profile(du),
-            spread.profile(dv),
-            spread.profile_slope(du),
-            spread.profile_slope(dv),
-        )
-        light = (flux * evidence.gain[c])[:, None, None]
-        shape = pv[:, :, None] * pu[:, None, :]
-        along_u, along_v = pv[:, :, None] * su[:, None, :], sv[:, :, None] * pu[:, None, :]
-        T = np.stack([shape, -light * along_u, -light * along_v], axis=1).reshape(len(flux), 3, -1)
-        rest = patch - light * shape
-        weighted = (T * weight.reshape(len(flux), 1, -1)).transpose(0, 2, 1)
-        information[c] = T @ weighted
-        score[c] = (rest.reshape(len(flux), 1, -1) @ weighted)[:, 0]
-        total += float((weight * (patch**2 - rest**2)).sum())
-    return Local(information, score, total)
-
-
-def _patches(
-    evidence: Evidence, camera: int, middle: NDArray[np.int_], offsets: NDArray[np.int_]
-) -> tuple[Array, Array]:
-    """Images and weights (n, k, k) around whole pixels (n, 2); patches off the window weigh nothing."""
-    images, weights = evidence.images[camera], evidence.weights[camera]
-    place = middle - evidence.corners_px[camera]
-    size = np.array(images.shape[:0:-1])
-    reach = len(offsets) // 2
-    inside = np.all((place >= reach) & (place < size - reach), axis=1, keepdims=True)
-    place = np.where(inside, place, reach)
-    index = (
-        np.arange(len(middle))[:, None, None],
-        (place[:, 1, None] + offsets)[:, :, None],
-        (place[:, 0, None] + offsets)[:, None, :],
-    )
-    return images[index], weights[index] * inside[..., None]
+def place_of(state: ChainState, flux_counts: Array) -> Place:
+    """A state with the markers' fluxes (n,) for the kernels."""
+    body = state.site_body
+    return Place(plain(body.rotation), plain(body.position_m), state.angles_rad, plain(flux_counts))
 
 
 def _radius(spread: Spread) -> int:
@@ -245,9 +143,3 @@ def _groups(flux: Array, shared: bool) -> Array:
     """Which fluxes (n, groups) change together; a marker without flux has none."""
     own: Array = np.eye(len(flux))[:, np.flatnonzero(flux)]
     return own.sum(axis=1, keepdims=True) if shared else own
-
-
-def _limited(step: Array, by_state: Array) -> Array:
-    """A step by which no marker moves farther than the spread's slope reaches."""
-    farthest = float(np.linalg.norm(by_state @ step[:STATE_SIZE], axis=-1).max())
-    return step * min(1.0, _MAX_STEP_PX / max(farthest, 1e-12))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +9,9 @@ from numpy.typing import NDArray
 
 from executive.rig import RigCalibration
 from executive.types import Array, Centres, Images
+from perception.choice import Candidates
 from perception.difference import difference
-from perception.frames import check_frames, saturation
+from perception.frames import blackness, check_frames, fresh, saturation, staleness, stuck_pixels
 from perception.markers import Detection, find_markers
 from perception.psf import marker_spread
 from perception.similarity import compare
@@ -19,18 +19,26 @@ from perception.similarity import compare
 FALSE_ALARM_RATE = 0.2  # per window and LED; high, as the joint check comes after
 
 
+_NAMES = ("left", "right")
+
+
 @dataclass(frozen=True, eq=False)
 class Look:
-    """Candidates [camera][marker], the dark images, and what makes the frames unusable (or empty)."""
+    """Candidates [camera][marker], the dark images, and what makes the frames unusable (or empty).
 
-    candidates: Sequence[Sequence[Sequence[Detection]]]
+    A camera that shows nothing usable has no candidates at all, `[]`, and `note` says why; if neither does,
+    that is the `problem`.
+    """
+
+    candidates: Candidates
     reference: tuple[NDArray[np.float32], NDArray[np.float32]] | None
     problem: str = ""
+    note: str = ""
 
     @property
     def strongest_px(self) -> Array:
         """Centres (2, n, 2) of the strongest candidates, NaN where none."""
-        uv = np.full((2, len(self.candidates[0]), 2), np.nan)
+        uv = np.full((2, max(len(camera) for camera in self.candidates), 2), np.nan)
         for camera, per_marker in enumerate(self.candidates):
             for marker, found in enumerate(per_marker):
                 if found:
@@ -47,25 +55,47 @@ def look_at(rig: RigCalibration, data: Images | Centres, range_m: float) -> Look
         return Look(_given(data), None)
     check_frames(data, rig.sensor)
     cameras = [_detect(rig, data, camera, range_m) for camera in (0, 1)]
-    problems = [f"{name} camera: {c[2]}" for name, c in zip(("left", "right"), cameras, strict=True) if c[2]]
-    return Look([c[0] for c in cameras], (cameras[0][1], cameras[1][1]), "; ".join(problems))
+    black = blackness((float(np.median(cameras[0].reference)), float(np.median(cameras[1].reference))))
+    problems = [dark or camera.problem for dark, camera in zip(black, cameras, strict=True)]
+    said = "; ".join(f"{name} camera: {why}" for name, why in zip(_NAMES, problems, strict=True) if why)
+    blind = all(problems)
+    candidates = [
+        [] if why and not blind else camera.candidates for camera, why in zip(cameras, problems, strict=True)
+    ]
+    reference = cameras[0].reference, cameras[1].reference
+    return Look(candidates, reference, said if blind else "", "" if blind else said)
 
 
-def _detect(
-    rig: RigCalibration, images: Images, camera: int, range_m: float
-) -> tuple[list[list[Detection]], NDArray[np.float32], str]:
+@dataclass(frozen=True, eq=False)
+class _Seen:
     """One camera's candidates by marker, dark image, and problem."""
-    window, leds = images.windows[camera], images.shot.leds
-    markers = len(rig.markers.positions_plc_m)
-    similarity = compare(images.counts[camera], rig.sensor.noise_counts)
-    found = difference(similarity.frames, leds, markers, rig.sensor.noise_counts)
+
+    candidates: list[list[Detection]]
+    reference: NDArray[np.float32]
+    problem: str
+
+
+def _detect(rig: RigCalibration, images: Images, camera: int, range_m: float) -> _Seen:
+    """What one camera shows."""
+    window, markers = images.windows[camera], len(rig.markers.positions_plc_m)
+    counts, leds, sensor = images.counts[camera], images.shot.leds, rig.sensor
+    nothing: list[list[Detection]] = [[] for _ in range(markers)]
+    kept = fresh(counts)
+    stale = staleness(kept)
+    if not kept.all() and not stale:
+        counts, leds = counts[kept], tuple(mask for mask, keep in zip(leds, kept, strict=True) if keep)
+        stale = "" if 0 in leds else "no frame with dark LEDs is left"
+    if stale:
+        return _Seen(nothing, images.counts[camera].mean(axis=0, dtype=np.float32), stale)
+    similarity = compare(counts, sensor.noise_counts)
+    found = difference(similarity.frames, leds, markers, sensor.noise_counts)
+    found = found.without(stuck_pixels(counts, sensor))
     spread = marker_spread(rig, range_m)
     candidates = [
         find_markers(image, sigma, spread, (window.u, window.v), FALSE_ALARM_RATE) if 1 << m in leds else []
         for m, (image, sigma) in enumerate(zip(found.images, found.sigma, strict=True))
     ]
-    problem = saturation(images.counts[camera], rig.sensor) or similarity.problem
-    return candidates, found.reference, problem
+    return _Seen(candidates, found.reference, saturation(counts, sensor) or similarity.problem)
 
 
 def _given(centres: Centres) -> list[list[list[Detection]]]:

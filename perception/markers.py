@@ -26,6 +26,9 @@ _MAX_WANDER_PX = 2.0
 # 0.05, 0.05, 0.03 of it at SNR 6, 7, 8, 9, 12 (6000 each, 1.6 to 5 m); poses, whose centres are weighed by
 # their fitted fluxes, ask for 0.09 at 8.2 and 0.05 at 9 (9000 poses).
 _EXCESS_SNR4 = 350.0
+_SPIKE_SIGMAS = 6.0
+_SPIKE_SLACK_SIGMAS = 1.5
+_NO_WORD = np.float32(1e3)
 SIGMA_FLOOR_PX = 0.01  # what is left of lens calibration and spread model
 
 
@@ -79,6 +82,7 @@ def find_markers(
     other shapes, smaller than the spread, or with values that are not finite.
     """
     _check(image, sigma, spread)
+    image, sigma = _without_spikes(image, sigma, spread)
     threshold = detection_threshold(image.size, false_alarm_rate)
     snr = filter_snr(image, sigma, spread)
     found = (_fit(image, sigma, spread, u, v) for u, v in _peaks(snr, threshold, 2 * at_most))
@@ -105,6 +109,26 @@ def _check(image: NDArray[np.float32], sigma: NDArray[np.float32], spread: Sprea
         raise ValueError(
             "got an image with non-finite values or noise of 0, expected finite and positive noise"
         )
+
+
+def _without_spikes(
+    image: NDArray[np.float32], sigma: NDArray[np.float32], spread: Spread
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """The image without pixels that no marker could light: far below zero, or so much brighter than all four
+    beside them as its spread never is. They keep their place at a noise that takes their say."""
+    high = image > _SPIKE_SIGMAS * sigma
+    rows, columns = np.nonzero(high)
+    spikes = image < -_SPIKE_SIGMAS * sigma
+    if len(rows):
+        beside = np.pad(image / sigma, 1)
+        around = [beside[rows + i, columns + j] for i, j in ((0, 1), (1, 0), (1, 2), (2, 1))]
+        fall = spread.profile(np.ones(1))[0] / spread.profile(np.zeros(1))[0]
+        expected = 0.5 * float(fall) * image[rows, columns] / sigma[rows, columns]
+        spikes[rows, columns] = expected - np.max(around, axis=0) > _SPIKE_SLACK_SIGMAS
+    if not spikes.any():
+        return image, sigma
+    quiet = np.where(spikes, np.float32(0), image)
+    return quiet, np.where(spikes, _NO_WORD * sigma, sigma).astype(np.float32)
 
 
 def _peaks(snr: NDArray[np.float32], threshold: float, at_most: int) -> list[tuple[int, int]]:

@@ -1,47 +1,56 @@
-"""Motion fragment analysis (MFA): two images of a moving rover -> where it is, roughly (paper, 4.1).
+"""Motion fragment analysis (MFA): what moved between two frames of one camera (paper, 4.1).
 
-The rover as a whole is the marker: where two frames differ, after the head's own movement and the change
-of light are taken out, there it was or is. Cheap, approximate, and it forgives vibration.
+The head's own shake and the change of light are taken out, then pixels that differ by more than the ground's
+own unrest are opened, joined into blobs and counted. A rover that creeps by a pixel shows by its edges
+alone, so fragments carry how strong an edge of the second frame each of their pixels is.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Array, Vec2, Window
-from perception.camera import StereoModel
-from perception.checks import as_finite
+from executive.types import Vec2, Window
+from perception.steadying import Picture, lay_onto
 
-Image = NDArray[np.float32]
+LEAST_SIDE_PX = 32
+_SMOOTH_PX = 0.8
+_SMOOTH_NOISE = 1 / (2 * math.sqrt(math.pi) * _SMOOTH_PX)  # what the smoothing leaves of white noise
+_MAD = 1.4826
+_SPARSE = 4  # of pixels that tell the unrest
+_NEAR_PX = 7
+_THRESHOLD = 4.0  # multiples of the unrest
+_REGISTRATION_PX = 0.05  # how far off the frames may lie on each other
+_CLEAR = 6.0  # unrests, or usual slopes, from which an edge is as clear as can be
+_LEAST_AREA_PX = 3  # of a blob, in pixels twice as large
+_PLAIN = 2.0  # pixel noises of texture below which there is nothing to recognise
+_MOST_UNLIKE = 0.75  # of the ground's texture may differ, by median; the same ground comes to 0.1 to 0.5
+_MOST_MOVED = 0.3  # share of the picture; where more differs, the frames do not show one scene
 
-_SMOOTH_PX = 1.5
-_SMOOTH_NOISE = 1 / (2 * np.sqrt(np.pi) * _SMOOTH_PX)  # what the smoothing leaves of white noise
-_THRESHOLD_NOISES = 5.0
-_REGISTRATION_PX = 0.3  # how far off the frames may lie on each other
-_LEAST_AREA_PX = 12
-_MATCH_SCORE = 0.5
-_LARGEST_SHIFT_PX = 40
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fragments:
-    """Motion in one camera, full-frame pixels: where the fragments' middle is, the region that holds them,
-    their area, and by how much the picture moved from the first frame to the second (None if unclear)."""
+    """Motion in one camera, in pixels of `binning` x `binning` full ones from `corner_px` on.
 
-    centre_px: Vec2
+    `moved` (h, w) is 1 where something moved, else 0; `edges` (h, w) is how clear an edge of the second frame
+    is there, `lines` (h, w) the same of all edges near by: what moves along its own edges does not change
+    them. `before` (h, w) is the first frame as the head saw the second; `shaken_px` is by how many full
+    pixels the head moved the picture; `region` bounds the largest blob and those near it in the full frame.
+    """
+
+    moved: NDArray[np.uint8]
+    edges: Picture
+    lines: Picture
+    before: Picture
+    binning: int
+    corner_px: tuple[int, int]
+    shaken_px: Vec2
     region: Window
     area_px: int
-    shift_px: Vec2 | None
-
-    @property
-    def latest_px(self) -> Vec2:
-        """The middle at the second frame: fragments lie halfway between the two."""
-        du, dv = self.shift_px or (0.0, 0.0)
-        return self.centre_px[0] + du / 2, self.centre_px[1] + dv / 2
 
 
 def motion_fragments(
@@ -50,158 +59,114 @@ def motion_fragments(
     noise_counts: float,
     corner_px: tuple[int, int] = (0, 0),
     reach_px: float = 400.0,
+    binning: int = 1,
 ) -> Fragments | None:
-    """Fragments between two frames (h, w) [counts], None if nothing moved; ValueError on unequal shapes.
+    """Fragments between two frames (h, w) [counts]; None if nothing moved, or nearly everything.
 
-    `reach_px` is how far from the largest fragment others still belong to the rover: its size in pixels.
+    `reach_px` is how far from the largest blob others belong to its region. ValueError on frames of unequal
+    shape or with sides below 32 px once binned.
     """
-    if before.ndim != 2 or before.shape != after.shape or min(before.shape) < 32:
+    if before.ndim != 2 or before.shape != after.shape or min(before.shape) // binning < LEAST_SIDE_PX:
         raise ValueError(
-            f"got frames of shape {before.shape} and {after.shape}, expected two equal, 32 or more"
+            f"got frames of shape {before.shape} and {after.shape}, "
+            f"expected two equal, {LEAST_SIDE_PX * binning} or more pixels a side"
         )
-    first, second = before.astype(np.float32), after.astype(np.float32)
-    head_shift = _common_shift(first, second)
-    second = _matched_light(first, _moved(second, head_shift))
-    change = np.asarray(cv2.GaussianBlur(second - first, (0, 0), _SMOOTH_PX), dtype=np.float32)
-    allowance = _THRESHOLD_NOISES * _change_noise(change, noise_counts) + _REGISTRATION_PX * _steepness(first)
-    marked = _fragment_mask(change, allowance)
-    _clear_rim(marked, head_shift)
-    mask = _near_largest(marked, reach_px)
-    if not mask.any():
+    first, second = _binned(before, binning), _binned(after, binning)
+    laid = lay_onto(second, first)
+    if laid.texture > _PLAIN * noise_counts / binning and laid.rest > _MOST_UNLIKE * laid.texture:
         return None
-    rows, columns = np.nonzero(mask)
-    region = Window(int(columns.min()), int(rows.min()), int(np.ptp(columns)) + 1, int(np.ptp(rows)) + 1)
-    shift = _rover_shift(first, second, region)
-    centre = np.array([(columns.min() + columns.max()) / 2, (rows.min() + rows.max()) / 2])
-    centre = 0.5 * centre + 0.5 * np.array([columns.mean(), rows.mean()])
-    # Second-frame pixels: undo the head's own movement, so that they belong to the latest view.
-    u, v = centre + head_shift + np.array(corner_px)
-    moved_region = Window(region.u + corner_px[0], region.v + corner_px[1], region.width, region.height)
-    return Fragments((float(u), float(v)), moved_region, int(mask.sum()), shift)
-
-
-def _common_shift(first: Image, second: Image) -> Array:
-    """Movement of the whole picture (u, v) [px]; zero unless undoing it makes the pictures more alike."""
-    window = cv2.createHanningWindow(first.shape[::-1], cv2.CV_32F)
-    (du, dv), _ = cv2.phaseCorrelate(first - first.mean(), second - second.mean(), window)
-    shift = np.array([du, dv])
-    if np.abs(shift).max() > _LARGEST_SHIFT_PX:
-        return np.zeros(2)
-    still = np.median(np.abs(_matched_light(first, second) - first))
-    undone = np.median(np.abs(_matched_light(first, _moved(second, shift)) - first))
-    return shift if undone < 0.98 * still else np.zeros(2)
-
-
-def _moved(image: Image, shift_px: Array) -> Image:
-    """The image with a movement undone; what comes in at the rim repeats the rim."""
-    if not shift_px.any():
-        return image
-    M = np.array([[1.0, 0.0, -shift_px[0]], [0.0, 1.0, -shift_px[1]]])
-    moved = cv2.warpAffine(
-        image, M, image.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
+    slope = slope_of(second)
+    unrest = _in_unrests(second - laid.counts, slope, noise_counts / binning)
+    moved = _blobs(unrest, rim_px=math.ceil(float(np.abs(laid.shift_px).max())) + 2)
+    share = float(np.count_nonzero(moved)) / moved.size
+    if not 0 < share < _MOST_MOVED:
+        return None
+    clear = clearness(slope)
+    region, area = _near_largest(moved, reach_px / binning)
+    return Fragments(
+        moved=moved,
+        edges=np.asarray(np.sqrt(clear * np.minimum(unrest, _CLEAR)) * moved, dtype=np.float32),
+        lines=clear * near_to(moved),
+        before=laid.counts,
+        binning=binning,
+        corner_px=corner_px,
+        shaken_px=(float(-laid.shift_px[0] * binning), float(-laid.shift_px[1] * binning)),
+        region=Window(
+            corner_px[0] + region.u * binning,
+            corner_px[1] + region.v * binning,
+            region.width * binning,
+            region.height * binning,
+        ),
+        area_px=area * binning**2,
     )
-    return np.asarray(moved, dtype=np.float32)
 
 
-def _matched_light(first: Image, second: Image) -> Image:
-    """`second` with gain and offset that fit it to `first`, refitted without the pixels that moved."""
-    a, b = first.ravel()[::7], second.ravel()[::7]
-    keep = np.ones(a.shape, dtype=bool)
-    gain, offset = 1.0, 0.0
-    for _ in range(3):
-        spread = float(b[keep].var())
-        covariance = float(((a[keep] - a[keep].mean()) * (b[keep] - b[keep].mean())).mean())
-        gain = float(np.clip(covariance / spread, 0.5, 2.0)) if spread > 1e-6 else 1.0
-        offset = float(a[keep].mean() - gain * b[keep].mean())
-        rest = np.abs(a - gain * b - offset)
-        keep = rest <= 2.5 * max(float(np.median(rest)), 1e-3)
-    return np.asarray(gain * second + offset, dtype=np.float32)
+def _binned(frame: NDArray[np.uint16], binning: int) -> Picture:
+    """The mean of every `binning` x `binning` pixels; what is left over at the far sides is dropped."""
+    if binning == 1:
+        return frame.astype(np.float32)
+    height, width = (side // binning for side in frame.shape)
+    whole = frame[: height * binning, : width * binning]
+    return cv2.resize(whole, (width, height), interpolation=cv2.INTER_AREA).astype(np.float32)
 
 
-def _change_noise(change: Image, noise_counts: float) -> float:
-    """Noise of the smoothed change [counts]: measured robustly, not below what the sensor alone makes."""
-    measured = float(np.median(np.abs(change))) * 1.4826
-    return max(measured, noise_counts * float(np.sqrt(2.0) * _SMOOTH_NOISE))
+def _smooth(picture: Picture) -> Picture:
+    return np.asarray(cv2.GaussianBlur(picture, (0, 0), _SMOOTH_PX), dtype=np.float32)
 
 
-def _steepness(image: Image) -> Image:
-    """Slope of the smoothed picture [counts/px]: what a pixel of wrong registration would change."""
-    along_v, along_u = np.gradient(np.asarray(cv2.GaussianBlur(image, (0, 0), _SMOOTH_PX), dtype=np.float32))
-    slope = np.hypot(along_u, along_v).astype(np.float32)
-    return np.asarray(cv2.dilate(slope, np.ones((3, 3), np.uint8)), dtype=np.float32)
+def slope_of(picture: Picture) -> Picture:
+    """Slope of the smoothed picture [counts/px]."""
+    smooth = _smooth(picture)
+    along_u = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=1 / 8)
+    along_v = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=1 / 8)
+    return np.asarray(cv2.magnitude(along_u, along_v), dtype=np.float32)
 
 
-def _clear_rim(mask: NDArray[np.uint8], head_shift: Array) -> None:
-    """Blank, in place, what one of the frames did not see, and the rim where smoothing has no neighbours."""
-    rim = int(np.ceil(np.abs(head_shift).max())) + 3
-    mask[:rim], mask[-rim:], mask[:, :rim], mask[:, -rim:] = 0, 0, 0, 0
+def _in_unrests(change: Picture, slope: Picture, noise_counts: float) -> Picture:
+    """Size of the change in standard deviations of what does not move.
 
-
-def _fragment_mask(change: Image, allowance: Image) -> NDArray[np.uint8]:
-    """Where the change stands out: thresholded, specks opened away, neighbours closed together."""
-    mask = (np.abs(change) > allowance).astype(np.uint8)
-    mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(np.uint8)
-    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8)), dtype=np.uint8)
-
-
-def _near_largest(mask: NDArray[np.uint8], reach_px: float) -> NDArray[np.bool_]:
-    """The blobs within reach of the largest one (their centroids); all False if there is none."""
-    count, labels, stats, centroids = cv2.connectedComponentsWithStats(mask, connectivity=8)
-    areas = stats[:, cv2.CC_STAT_AREA].copy()
-    areas[0] = 0
-    if count < 2 or areas.max() < _LEAST_AREA_PX:
-        return np.zeros(mask.shape, dtype=bool)
-    distance = np.linalg.norm(centroids - centroids[int(areas.argmax())], axis=1)
-    kept = (distance <= reach_px) & (areas >= _LEAST_AREA_PX)
-    result: NDArray[np.bool_] = kept[labels]
-    return result
-
-
-def _rover_shift(first: Image, second: Image, region: Window) -> Vec2 | None:
-    """Movement of the region's content by template matching [px], sub-pixel; None if unclear."""
-    template = first[region.v : region.v + region.height, region.u : region.u + region.width]
-    reach = min(_LARGEST_SHIFT_PX, max(template.shape))
-    v0, u0 = max(region.v - reach, 0), max(region.u - reach, 0)
-    field = second[v0 : region.v + region.height + reach, u0 : region.u + region.width + reach]
-    score = np.asarray(cv2.matchTemplate(field, template, cv2.TM_CCOEFF_NORMED), dtype=np.float32)
-    _, best, _, (column, row) = cv2.minMaxLoc(score)
-    if not best > _MATCH_SCORE:
-        return None
-    du = column + _vertex(score[row, max(column - 1, 0) : column + 2])
-    dv = row + _vertex(score[max(row - 1, 0) : row + 2, column])
-    return float(u0 + du - region.u), float(v0 + dv - region.v)
-
-
-def _vertex(three: Image) -> float:
-    """Offset of the maximum of a parabola through three samples from the middle one; 0 at a rim."""
-    if three.size != 3:
-        return 0.0
-    a, b, c = (float(x) for x in three)
-    bend = a - 2 * b + c
-    return 0.0 if bend >= 0 else 0.5 * (a - c) / bend
-
-
-def coarse_position(
-    model: StereoModel, uv_px: Array, sigma_px: Array, height_ih: tuple[Array, float, float]
-) -> tuple[Array, Array]:
-    """A point (3,) in `ih` and its covariance from pixels (2, 2) with sigmas (2,), and a known height.
-
-    `height_ih` is the plane the point lies on as (unit normal in ih, offset along it [m], sigma [m]).
-    A camera that saw nothing is NaN; one is enough. ValueError if neither saw anything.
+    Measured robustly, as grain that the sensor does not resolve flickers with each shake; not below what the
+    sensor alone makes. On steep slopes the rest of the registration comes on top.
     """
-    normal, offset, sigma_height = as_finite("normal", height_ih[0], (3,)), height_ih[1], height_ih[2]
-    seen = np.isfinite(uv_px).all(axis=1)
-    if not seen.any():
-        raise ValueError("uv_px: got NaN for both cameras, expected at least one to see the rover")
-    rays = model.rays_ih(uv_px[:, None])[:, 0]
-    centre, ray = model.position_ih_m[seen][0], rays[seen][0]
-    point = centre + ray * (offset - normal @ centre) / (normal @ ray)
-    H = np.eye(3)
-    for _ in range(5):
-        uv, J = model.project_with_jacobian(point[None])
-        w = sigma_px[seen] ** -2.0
-        A, off = J[seen, 0], (uv_px - uv[:, 0])[seen]
-        H = np.einsum("cki,c,ckj->ij", A, w, A) + np.outer(normal, normal) / sigma_height**2
-        g = np.einsum("cki,c,ck->i", A, w, off) + normal * (offset - normal @ point) / sigma_height**2
-        point = point + np.linalg.solve(H, g)
-    return point, np.asarray(np.linalg.inv(H), dtype=np.float64)
+    size = np.abs(_smooth(change))
+    usual = _MAD * float(np.median(size[::_SPARSE, ::_SPARSE]))
+    usual = max(usual, noise_counts * math.sqrt(2.0) * _SMOOTH_NOISE)
+    sigma = cv2.magnitude(np.full_like(slope, usual), np.float32(_REGISTRATION_PX) * slope)
+    return np.asarray(size / sigma, dtype=np.float32)
+
+
+def clearness(slope: Picture) -> Picture:
+    """Slopes in multiples of the usual one, none so large that it counts for all the others."""
+    usual = max(float(np.median(slope[::_SPARSE, ::_SPARSE])), 1e-3)
+    return np.asarray(np.minimum(slope, _CLEAR * usual) / np.float32(usual), dtype=np.float32)
+
+
+def near_to(moved: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """1 where something moved or did so a few pixels off, else 0."""
+    return np.asarray(cv2.dilate(moved, np.ones((_NEAR_PX, _NEAR_PX), np.uint8)), dtype=np.uint8)
+
+
+def _blobs(unrest: Picture, rim_px: int) -> NDArray[np.uint8]:
+    """Where the change stands out, 1 or 0: specks opened away, the rest widened by a pixel all around."""
+    mask = (unrest > _THRESHOLD).astype(np.uint8)
+    mask[:rim_px], mask[-rim_px:], mask[:, :rim_px], mask[:, -rim_px:] = 0, 0, 0, 0
+    two = np.ones((2, 2), np.uint8)
+    mask = cv2.dilate(cv2.erode(mask, two, anchor=(0, 0)), two, anchor=(1, 1)).astype(np.uint8)
+    return np.asarray(cv2.dilate(mask, np.ones((3, 3), np.uint8)), dtype=np.uint8)
+
+
+def _near_largest(mask: NDArray[np.uint8], reach_px: float) -> tuple[Window, int]:
+    """What bounds the largest blob and those whose middles are within reach of its own, and their area."""
+    small = cv2.dilate(mask, np.ones((2, 2), np.uint8))[::2, ::2]  # half as fine, which is fine enough
+    _, _, stats, middles = cv2.connectedComponentsWithStats(small, connectivity=8)
+    stats, middles = stats[1:], middles[1:]
+    areas = stats[:, cv2.CC_STAT_AREA]
+    away = 2 * np.linalg.norm(middles - middles[int(areas.argmax())], axis=1)
+    kept = stats[(away <= reach_px) & ((areas >= _LEAST_AREA_PX) | (areas == areas.max()))]
+    corner = kept[:, [cv2.CC_STAT_LEFT, cv2.CC_STAT_TOP]]
+    low = corner.min(axis=0)
+    size = (corner + kept[:, [cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]]).max(axis=0) - low
+    u, v, width, height = (2 * int(x) for x in (*low, *size))
+    return Window(u, v, min(width, mask.shape[1] - u), min(height, mask.shape[0] - v)), int(
+        cv2.countNonZero(mask[v : v + height, u : u + width])
+    )

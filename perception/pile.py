@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from executive.types import Centres, Images, Vec2, Window
 from perception.chain import Chain
+from perception.choice import Rejection, noted
 from perception.exposure import view_of
-from perception.frames import check_frames, saturation
+from perception.frames import blackness, check_frames, saturation
 from perception.joint import JointFix, joint_fix
 from perception.mean_centres import MeanCentres, fix_from_centres
-from perception.plausibility import Rejection
 from perception.prediction import Expectation
 from perception.psf import marker_spread
 from perception.stacking import Stack
@@ -25,6 +27,7 @@ class Pile:
         n = len(chain.markers_plc_m)
         self._stacks = [Stack(n, chain.rig.sensor.noise_counts) for _ in (0, 1)]
         self._saturated = ["", ""]
+        self._level = [0.0, 0.0]
         self._windows: tuple[Window, Window] | None = None
         self._centres = MeanCentres.none(n)
         self.frames = 0
@@ -43,22 +46,42 @@ class Pile:
         self.frames += len(data.shot.leds)
         for camera, counts in enumerate(data.counts):
             self._stacks[camera].add(counts, data.shot.leds)
+            self._level[camera] = float(np.median(counts[0]))
             self._saturated[camera] = self._saturated[camera] or saturation(counts, self._chain.rig.sensor)
 
     @property
     def problem(self) -> str:
-        """What makes the frames unusable, empty if nothing does."""
-        problems = [full or stack.problem for full, stack in zip(self._saturated, self._stacks, strict=True)]
-        named = zip(("left", "right"), problems, strict=True)
-        return "; ".join(f"{name} camera: {problem}" for name, problem in named if problem)
+        """What makes the frames of both cameras unusable, empty as long as one will do."""
+        problems = self._problems
+        return _said(problems) if all(problems) else ""
+
+    @property
+    def _problems(self) -> list[str]:
+        """What makes each camera's frames unusable, empty where nothing does."""
+        black = blackness((self._level[0], self._level[1]))
+        found = zip(black, self._saturated, self._stacks, strict=True)
+        return [dark or full or stack.problem for dark, full, stack in found]
 
     def answer(self, expectation: Expectation, tilt_rad: Vec2, widen: float) -> JointFix | Rejection:
-        """The one pose in the expectation's region that all of it shows."""
+        """The one pose in the expectation's region that all of it shows, or one camera, the other being
+        blind; the answer then says so."""
         if self._windows is None:
             return fix_from_centres(self._chain, self._centres, expectation, tilt_rad)
-        left, right = (stack.difference() for stack in self._stacks)
-        self.reference = (left.reference, right.reference)
+        problems = self._problems
+        if all(problems):
+            return Rejection(_said(problems), 0)
+        differences = [
+            None if why else stack.difference() for why, stack in zip(problems, self._stacks, strict=True)
+        ]
+        left, right = (stack.reference for stack in self._stacks)
+        self.reference = (left, right)
         range_m = view_of(self._chain, expectation.state).range_m
         spread = marker_spread(self._chain.rig, range_m)
         corners = [(w.u, w.v) for w in self._windows]
-        return joint_fix(self._chain, (left, right), corners, spread, expectation, tilt_rad, widen)
+        answer = joint_fix(self._chain, differences, corners, spread, expectation, tilt_rad, widen)
+        return noted(answer, _said(problems))
+
+
+def _said(problems: Sequence[str]) -> str:
+    named = zip(("left", "right"), problems, strict=True)
+    return "; ".join(f"{name} camera: {problem}" for name, problem in named if problem)

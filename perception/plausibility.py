@@ -3,32 +3,46 @@
 For each LED any pair of a left and a right candidate that meets in space is a hypothesis; so is "not seen".
 Sets of hypotheses are tried from the fullest down; one is accepted when the distances between its points
 are those of the marker plate and the residuals of its pose pass the chi-square gate; among equally full
-sets the most likely wins, evenness of brightness included.
+sets the most likely wins, evenness of brightness included. Two markers make a pose only where no third is
+seen: any two of a plate whose LEDs are mixed up fit a rover that stands elsewhere.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from executive.types import Array, Vec2
 from perception.body import Transform, points_in_body
 from perception.camera import triangulate
-from perception.chain import Chain
+from perception.chain import Chain, ChainState
+from perception.choice import (
+    Candidates,
+    Choice,
+    Circumstances,
+    Rejection,
+    brightness_misfit,
+    faces_cameras,
+)
+from perception.identity import exchanges
 from perception.markers import Detection
-from perception.pose import Fix, Prior, Sighting, chi2_limit, estimate, guess_body
+from perception.monocular import choose_alone
+from perception.pose import Prior, Sighting, chi2_limit, estimate, guess_body
+from perception.prediction import Expectation
 from perception.rotation import nearest_rotation, rot_x, rot_y, rot_z
 
-Candidates = Sequence[Sequence[Sequence[Detection]]]  # [camera][marker] -> detections
+__all__ = ["Candidates", "Choice", "Rejection", "choose", "faces_cameras"]
 
 _GATE = 0.999
 _WIDE_GATE_SIGMAS = 4.0  # for the quick tests that only prune
 _BRIGHTNESS_RATIO = 2.5  # between the two cameras, which see a marker from almost the same side
 _MAX_TRIALS = 48
 _LEAST_MARKERS = 2
+_OF_MORE = 3  # the least that must fit where more are seen
+_LEAD = 16.0  # by how many squared sigmas of the prediction one way of swapping must be nearer than another
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,33 +60,6 @@ class StereoPoint:
         return float(np.hypot(self.left.snr, self.right.snr))
 
 
-@dataclass(frozen=True, eq=False)
-class Choice:
-    """The accepted set and its pose; `sets_tried` says how much it took."""
-
-    points: tuple[StereoPoint, ...]
-    fix: Fix
-    sighting: Sighting
-    sets_tried: int
-
-    @property
-    def markers(self) -> int:
-        return len(self.points)
-
-    @property
-    def detected_px(self) -> Array:
-        """Centres (2, n, 2) that entered the pose, NaN where none."""
-        return self.sighting.uv_px
-
-
-@dataclass(frozen=True)
-class Rejection:
-    """Why no set was accepted. `seen` counts LEDs with a stereo candidate."""
-
-    why: str
-    seen: int
-
-
 def choose(
     chain: Chain,
     candidates: Candidates,
@@ -84,24 +71,66 @@ def choose(
     """The jointly consistent set of candidates and the pose it gives, or why there is none.
 
     `prior` starts the search for an attitude and is used as a measurement where fewer than four markers
-    are seen.
+    are seen. An empty list for a camera says that it is blind: the other one's candidates are then all.
     """
-    markers = len(chain.markers_plc_m)
-    pairs = [_stereo_points(chain, m, candidates[0][m], candidates[1][m]) for m in range(markers)]
+    around = Circumstances(chain, head_rad, joints_rad, tilt_rad, prior)
+    if not all(candidates):
+        return choose_alone(around, candidates)
+    found = _as_labelled(around, candidates)
+    if isinstance(found, Rejection) and found.seen == around.markers:
+        return _swapped(around, candidates) or found
+    return found
+
+
+def _as_labelled(around: Circumstances, candidates: Candidates) -> Choice | Rejection:
+    """The best set, each LED taken for the marker that it should be."""
+    pairs = _pairs(around, candidates)
     seen = sum(bool(p) for p in pairs)
     if seen < _LEAST_MARKERS:
-        return Rejection(f"{seen} of {markers} markers seen by both cameras, at least 2 needed", seen)
-    tried = 0
-    for count in range(seen, _LEAST_MARKERS - 1, -1):
-        accepted: list[tuple[float, Choice]] = []
-        for points in itertools.islice(_rigid_sets(chain, pairs, count), _MAX_TRIALS):
-            tried += 1
-            choice = _try(chain, points, head_rad, joints_rad, tilt_rad, prior, tried)
-            if choice is not None:
-                accepted.append((choice.fix.chi2 + _brightness_misfit(points), choice))
-        if accepted:
-            return min(accepted, key=lambda a: a[0])[1]
-    return Rejection(f"no pose explains {_LEAST_MARKERS} or more of the {seen} markers seen", seen)
+        return Rejection(f"{seen} of {around.markers} markers seen by both cameras, at least 2 needed", seen)
+    least, tried = min(seen, _OF_MORE), 0
+    for count in range(seen, least - 1, -1):
+        found = _best_of(around, pairs, count, tried)
+        if isinstance(found, Choice):
+            return found
+        tried = found
+    return Rejection(f"no pose explains {least} or more of the {seen} markers seen", seen)
+
+
+def _swapped(around: Circumstances, candidates: Candidates) -> Choice | None:
+    """A pose of all markers with one or two couples of LEDs exchanged, if just one is near the prediction."""
+    if around.prior is None:
+        return None
+    found: list[tuple[float, Choice]] = []
+    expected = ChainState(around.prior.site_body, around.head_rad, around.joints_rad)
+    for order, said in exchanges(around.markers):
+        pairs = _pairs(around, [[camera[m] for m in order] for camera in candidates])
+        choice = _best_of(around, pairs, around.markers, 0)
+        if isinstance(choice, Choice):
+            distance2 = Expectation(expected, around.prior.covariance).distance2(choice.fix.state.site_body)
+            found.append((distance2, replace(choice, note=said)))
+    found.sort(key=lambda f: f[0])
+    alone = len(found) == 1 or (len(found) > 1 and found[1][0] - found[0][0] > _LEAD)
+    return found[0][1] if alone else None
+
+
+def _pairs(around: Circumstances, candidates: Candidates) -> list[list[StereoPoint]]:
+    left, right = candidates
+    return [_stereo_points(around.chain, m, left[m], right[m]) for m in range(around.markers)]
+
+
+def _best_of(
+    around: Circumstances, pairs: Sequence[Sequence[StereoPoint]], count: int, tried: int
+) -> Choice | int:
+    """The most likely set of so many points that passes; how many were tried if none does."""
+    accepted: list[tuple[float, Choice]] = []
+    for points in itertools.islice(_rigid_sets(around.chain, pairs, count), _MAX_TRIALS):
+        tried += 1
+        choice = _try(around, points, tried)
+        if choice is not None:
+            flux = [p.left.flux_counts + p.right.flux_counts for p in points]
+            accepted.append((choice.fix.chi2 + brightness_misfit(flux), choice))
+    return min(accepted, key=lambda a: a[0])[1] if accepted else tried
 
 
 def _stereo_points(
@@ -167,48 +196,20 @@ def _distances_fit(chain: Chain, points: Sequence[StereoPoint]) -> bool:
     return True
 
 
-def _brightness_misfit(points: Sequence[StereoPoint]) -> float:
-    """Spread of the markers' brightness in squared factors of two: they share plane, range and power."""
-    flux = np.array([p.left.flux_counts + p.right.flux_counts for p in points])
-    return float(np.square(np.log2(flux / np.median(flux))).sum())
-
-
-def _try(
-    chain: Chain,
-    points: Sequence[StereoPoint],
-    head_rad: Vec2,
-    joints_rad: Vec2,
-    tilt_rad: Vec2 | None,
-    prior: Prior | None,
-    tried: int,
-) -> Choice | None:
+def _try(around: Circumstances, points: Sequence[StereoPoint], tried: int) -> Choice | None:
     """The set's pose, if its residuals pass."""
-    sighting = sighting_of(chain, points, head_rad, joints_rad, tilt_rad)
-    full = len(points) == len(chain.markers_plc_m)
-    measured_prior = None if full else prior
-    if len(points) < 3 and prior is None and tilt_rad is None:
+    chain, prior = around.chain, around.prior
+    sighting = around.sighting(
+        (camera, p.marker, detection) for p in points for camera, detection in enumerate((p.left, p.right))
+    )
+    measured_prior = None if len(points) == around.markers else prior
+    if len(points) < 3 and prior is None and around.tilt_rad is None:
         return None
     for start in _starts(chain, points, sighting, prior):
         fix = estimate(chain, sighting, start, measured_prior)
         if fix.chi2 <= chi2_limit(fix.dof, _GATE) and fix.converged and faces_cameras(chain, fix):
-            return Choice(tuple(points), fix, sighting, tried)
+            return Choice(fix, sighting, tried)
     return None
-
-
-def sighting_of(
-    chain: Chain,
-    points: Sequence[StereoPoint],
-    head_rad: Vec2,
-    joints_rad: Vec2,
-    tilt_rad: Vec2 | None,
-) -> Sighting:
-    """The measurement that a set of points stands for."""
-    n = len(chain.markers_plc_m)
-    uv, covariance = np.full((2, n, 2), np.nan), np.full((2, n, 2, 2), np.nan)
-    for p in points:
-        for camera, detection in enumerate((p.left, p.right)):
-            uv[camera, p.marker], covariance[camera, p.marker] = detection.uv_px, detection.covariance_px2
-    return Sighting(uv, covariance, head_rad, joints_rad, tilt_rad)
 
 
 def _starts(
@@ -241,10 +242,3 @@ def _upright_guess(
     heading = float(np.arctan2(M[1, 0] - M[0, 1], M[0, 0] + M[1, 1]))
     rotation = nearest_rotation(rot_z(heading) @ level)
     return Transform(rotation, (site - in_body @ rotation.T).mean(axis=0))
-
-
-def faces_cameras(chain: Chain, fix: Fix) -> bool:
-    """Whether the marker plane shows its lit side to the head: a mirrored assignment shows its back."""
-    plc = chain.site_plc(fix.state)
-    mast = np.array([0.0, 0.0, chain.rig.head.mast_height_m])
-    return bool(plc.rotation[:, 2] @ (mast - plc.position_m) > 0)

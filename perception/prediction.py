@@ -38,9 +38,7 @@ class Expectation:
     @property
     def surface(self) -> Prior:
         """The height of the ground alone, all that a fix may take from what it is to be held against."""
-        covariance = np.diag(np.full(6, _NOTHING_KNOWN**2))
-        covariance[2, 2] = self.covariance[2, 2]
-        return Prior(self.state.site_body, covariance)
+        return surface_of(self.prior)
 
     @property
     def wide(self) -> bool:
@@ -72,6 +70,13 @@ class Expectation:
             f"fix {math.hypot(off[0], off[1]) * 1e3:.0f} mm and {math.degrees(off[2]):.1f} deg "
             f"from the prediction, {math.sqrt(distance):.1f} sigmas"
         )
+
+
+def surface_of(prior: Prior) -> Prior:
+    """The height of the ground that a prediction says, and nothing else."""
+    covariance = np.diag(np.full(6, _NOTHING_KNOWN**2))
+    covariance[2, 2] = prior.covariance[2, 2]
+    return Prior(prior.site_body, covariance)
 
 
 def expect(

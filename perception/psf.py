@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
 
 from executive.rig import RigCalibration
 from executive.types import Array
+from perception.kernels.compiled import plain
+from perception.kernels.light import profiles
 
 
 @dataclass(frozen=True)
@@ -25,33 +26,16 @@ class Spread:
         return math.ceil(self.box_px / 2 + 4 * self.sigma_px)
 
     def profile(self, offset_px: Array) -> Array:
-        """Share of the light in a pixel whose centre lies `offset_px` from the marker, in one axis.
-
-        Convolving box, pixel and Gaussian gives the second difference of H, the Gaussian's second integral.
-        """
-        outer, inner = (self.box_px + 1) / 2, (self.box_px - 1) / 2
-        H = self._second_integral
-        share: Array = (
-            H(offset_px + outer) - H(offset_px + inner) - H(offset_px - inner) + H(offset_px - outer)
-        )
-        return share / self.box_px
+        """Share of the light in a pixel whose centre lies `offset_px` from the marker, in one axis."""
+        return self._profiles(offset_px)[0]
 
     def profile_slope(self, offset_px: Array) -> Array:
         """d profile / d offset [1/px]."""
-        outer, inner = (self.box_px + 1) / 2, (self.box_px - 1) / 2
-        s = self.sigma_px
-        slope: Array = (
-            ndtr((offset_px + outer) / s)
-            - ndtr((offset_px + inner) / s)
-            - ndtr((offset_px - inner) / s)
-            + ndtr((offset_px - outer) / s)
-        )
-        return slope / self.box_px
+        return self._profiles(offset_px)[1]
 
-    def _second_integral(self, t: Array) -> Array:
-        s = self.sigma_px
-        result: Array = t * ndtr(t / s) + s * np.exp(-0.5 * (t / s) ** 2) / math.sqrt(2 * math.pi)
-        return result
+    def _profiles(self, offset_px: Array) -> tuple[Array, Array]:
+        shares, slopes = profiles(plain(offset_px).ravel(), self.box_px, self.sigma_px)
+        return shares.reshape(offset_px.shape), slopes.reshape(offset_px.shape)
 
     def line(self) -> Array:
         """Shares in one axis of a marker centred on a pixel, shape (2 r + 1,)."""

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from executive.types import Array
 from perception.body import Transform
 from perception.chain import Chain, ChainState
+from perception.kernels.lattice import add_pattern
 from perception.prediction import Expectation
 from perception.psf import Spread
 from perception.rotation import exp_map, rot_z
@@ -156,17 +157,6 @@ def _scores(cameras: Sequence[FilterImages], uv_px: Array, columns: int, rows: i
     """Joint SNR (2 rows + 1, 2 columns + 1) of the pattern `uv_px` (2, n, 2) at all its shifts."""
     total = np.zeros((2 * rows + 1, 2 * columns + 1), dtype=np.float32)
     for camera, uv in zip(cameras, uv_px, strict=True):
-        place = np.rint(uv).astype(int) - camera.corner_px
-        for image, (u, v) in zip(camera.snr, place, strict=True):
-            _add(total, image, int(u) - columns, int(v) - rows)
+        add_pattern(total, camera.snr, *camera.corner_px, uv)
     total *= np.float32(1 / math.sqrt(uv_px.shape[0] * uv_px.shape[1]))
     return total
-
-
-def _add(total: NDArray[np.float32], image: NDArray[np.float32], u: int, v: int) -> None:
-    """Add the part of an image that starts at column u, row v; what lies outside adds nothing."""
-    height, width = total.shape
-    u0, v0 = max(u, 0), max(v, 0)
-    u1, v1 = min(u + width, image.shape[1]), min(v + height, image.shape[0])
-    if u0 < u1 and v0 < v1:
-        total[v0 - v : v1 - v, u0 - u : u1 - u] += image[v0:v1, u0:u1]

@@ -20,8 +20,10 @@ from perception.codes import coded_sequence
 from perception.difference import led_sequence
 from perception.effort import joint_pairs, more_pairs, seen_singly, wanted_by
 from perception.exposure import filter_snr_per_pair, pairs_needed, view_of
+from perception.frames import overexposed
 from perception.joint import JointFix
 from perception.look import look_at
+from perception.metering import Metering
 from perception.pile import Pile
 from perception.plausibility import Choice, Rejection, choose
 from perception.prediction import Expectation
@@ -64,14 +66,23 @@ class Eyes:
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
         self._devices, self._rig, self._clock = devices, rig, clock
         self._chain = Chain.of(rig)
+        self._light = Metering(devices, rig, clock)
         self._cadence_s = Shot(leds=(0,)).cadence_s
 
     def look(
         self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
     ) -> Steps[Outcome[Sight] | Sight | None]:
         """Look for the markers of the expected rover."""
+        windows = self._marker_windows(expectation, scope)
+        if self._light.exposure < 1.0:
+            yield from self._light.measure(windows, deadline_s)
         way = self._singly if seen_singly(self._chain, expectation) else self._jointly
-        return (yield from way(expectation, scope, request, deadline_s))
+        sight = yield from way(expectation, scope, request, deadline_s)
+        if isinstance(sight, Sight) and overexposed(sight.data, self._rig.sensor):
+            showed = yield from self._light.measure(windows, deadline_s)
+            if showed and self._light.exposure < sight.data.shot.exposure:
+                return (yield from way(expectation, scope, request, deadline_s)) or sight
+        return sight
 
     def most_pairs(self, expectation: Expectation, request: LocaliseRequest) -> tuple[float, int]:
         """Pairs that the expected view needs for detection or more, and the most that would be taken."""
@@ -101,11 +112,11 @@ class Eyes:
         snr = filter_snr_per_pair(self._rig, view_of(self._chain, expectation.state))
         by_memory = (self._frames_at_once(windows) - 1) // (markers + 1)
         by_time = (self._frames_until(deadline_s) - 1) // (markers + 1)
-        wanted = pairs_needed(snr) * scope.pairs_factor
+        wanted = pairs_needed(snr) * scope.pairs_factor * self._light.pairs_factor
         pairs = int(min(wanted, SINGLE_MOST_PAIRS[request.quality], max(by_memory, 1), by_time))
         if pairs < 1:
             return None
-        shot = Shot(led_sequence(markers, pairs), windows, self._cadence_s)
+        shot = self._shot(led_sequence(markers, pairs), windows)
         taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return Outcome(taken.reason, f"cameras: {taken.detail}")
@@ -128,12 +139,13 @@ class Eyes:
         at_once = max(self._frames_at_once(windows) // 2, _LEAST_CODED_PAIRS)
         most = at_once if windows == full_windows(self._chain) else wanted.most_pairs
         pile, sight, pairs = Pile(self._chain), None, 0
-        todo = int(min(joint_pairs(self._chain, expectation, wanted) * scope.pairs_factor, most))
+        factor = scope.pairs_factor * self._light.pairs_factor
+        todo = int(min(joint_pairs(self._chain, expectation, wanted) * factor, most))
         while todo > 0:
             batch = min(todo, at_once, self._frames_until(deadline_s) // 2)
             if batch < _LEAST_CODED_PAIRS:
                 break
-            shot = Shot(coded_sequence(len(self._chain.markers_plc_m), batch), windows, self._cadence_s)
+            shot = self._shot(coded_sequence(len(self._chain.markers_plc_m), batch), windows)
             taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline_s)
             if taken.value is None or not taken.ok:
                 return Outcome(taken.reason, f"cameras: {taken.detail}")
@@ -162,6 +174,9 @@ class Eyes:
     def _marker_windows(self, expectation: Expectation, scope: Scope) -> tuple[Window, Window]:
         spread = marker_spread(self._rig, view_of(self._chain, expectation.state).range_m)
         return self.windows(expectation, scope.widen, spread.radius_px + _MARGIN_PX)
+
+    def _shot(self, leds: tuple[int, ...], windows: tuple[Window, Window]) -> Shot:
+        return Shot(leds, windows, self._cadence_s, self._light.exposure)
 
     def _frames_at_once(self, windows: tuple[Window, Window]) -> int:
         return _PIXEL_BUDGET // max(w.width * w.height for w in windows)

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from executive.types import Array
 from perception.checks import as_finite
-
-Frames = NDArray[np.float32]
+from perception.kernels.frames import Frames, equalised, mean_and_range
 
 _MARKER_NOISES = 12.0  # a pixel that changes by more is a marker's, not the background's
 _VISIBLE_NOISE = 0.5  # a fitted change that alters pixels by less than this is noise fitted to noise
@@ -55,17 +54,15 @@ def compare(
     if stack.ndim != 3 or stack.shape[0] < 2 or min(stack.shape[1:]) < 8:
         raise ValueError(f"stack: got shape {stack.shape}, expected (2 or more, 8 or more, 8 or more)")
     as_finite("noise_counts", [noise_counts], (1,))
-    frames = stack.astype(np.float32)
-    mean = frames.mean(axis=0)
+    stack = np.array(stack, dtype=np.uint16, order="C")
+    mean, varies = mean_and_range(stack)
     basis = _basis(mean)
-    flat = (frames - mean).reshape(len(frames), -1)
-    coefficients = _fit(basis, flat, _background(stack, noise_counts))
-    flat -= coefficients @ basis
-    limit = np.float32(_MARKER_NOISES * noise_counts)
-    rest = np.sqrt(np.mean(np.clip(flat, -limit, limit) ** 2, axis=1)).astype(np.float64)
-    fitted = coefficients.astype(np.float64)
+    weighted = basis * _background(varies, noise_counts)
+    limit = _MARKER_NOISES * noise_counts
+    found, left, frames = equalised(stack, mean, basis, weighted, _inverse(weighted, basis), limit)
+    fitted, rest = found.astype(np.float64), left.astype(np.float64)
     shift, gain, offset = -fitted[:, :2], fitted[:, 2], fitted[:, 3]
-    visible = np.abs(fitted) * basis.std(axis=1) > _VISIBLE_NOISE * noise_counts
+    visible = np.abs(fitted) * basis.std(axis=(1, 2)) > _VISIBLE_NOISE * noise_counts
     problem = _problem(
         shift * visible[:, :2],
         gain * visible[:, 2],
@@ -73,31 +70,27 @@ def compare(
         rest / noise_counts,
         limits or SimilarityLimits(),
     )
-    flat += mean.reshape(1, -1)
-    return Similarity(shift, gain, offset, rest, flat.reshape(frames.shape), problem)
+    return Similarity(shift, gain, offset, rest, frames, problem)
 
 
 def _basis(mean: Frames) -> Frames:
-    """What a frame is fitted with, as rows (4, h * w): gradient along u, along v, contrast, one."""
+    """What a frame is fitted with (4, h, w): gradient along u, along v, contrast, one."""
     along_v, along_u = np.gradient(mean)
-    rows = (along_u, along_v, mean - mean.mean(), np.ones_like(mean))
-    return np.stack([row.ravel() for row in rows])
+    return np.stack([along_u, along_v, mean - mean.mean(), np.ones_like(mean)])
 
 
-def _background(stack: NDArray[np.uint16], noise_counts: float) -> NDArray[np.bool_]:
-    """Pixels (h * w,) that no marker lights up; all of them if the whole scene changes."""
-    steady: NDArray[np.bool_] = np.ptp(stack, axis=0).ravel() < _MARKER_NOISES * noise_counts
+def _background(varies: NDArray[np.uint16], noise_counts: float) -> NDArray[np.bool_]:
+    """Pixels (h, w) that no marker lights up; all of them if the whole scene changes."""
+    steady: NDArray[np.bool_] = varies < _MARKER_NOISES * noise_counts
     return steady if steady.mean() > _MIN_BACKGROUND else np.ones_like(steady)
 
 
-def _fit(basis: Frames, flat: Frames, pixels: NDArray[np.bool_]) -> Frames:
-    """Least-squares coefficients (n, 4) over `pixels`; a direction that the scene does not show stays 0."""
-    weighted = basis * pixels
-    gram = (weighted @ basis.T).astype(np.float64)
+def _inverse(weighted: Frames, basis: Frames) -> Frames:
+    """Of the Gram matrix (4, 4), for least squares; a direction that the scene does not show gets 0."""
+    gram = (weighted.reshape(4, -1) @ basis.reshape(4, -1).T).astype(np.float64)
     scale = np.sqrt(np.diag(gram)) + 1e-9
     inverse = np.linalg.pinv(gram / np.outer(scale, scale), rcond=1e-6) / np.outer(scale, scale)
-    coefficients: Frames = ((flat @ weighted.T) @ inverse).astype(np.float32)
-    return coefficients
+    return np.array(inverse, dtype=np.float32, order="C")
 
 
 def _problem(shift: Array, gain: Array, offset: Array, rest: Array, limits: SimilarityLimits) -> str:

@@ -137,6 +137,8 @@ class SimCameras:
             return "got a shot of 0 frames, expected 1 or more"
         if shot.cadence_s <= 0:
             return f"got a cadence of {shot.cadence_s} s, expected more than 0"
+        if not 0 < shot.exposure <= 1:
+            return f"got an exposure of {shot.exposure}, expected in (0, 1]"
         for camera, window in zip(self._rig.cameras, shot.windows or (), strict=False):
             inside = (
                 min(window.u, window.v) >= 0

@@ -50,11 +50,11 @@ class CentreDeveloper:
         uv_px, sigma_px = np.full((2, count, 2), np.nan), np.full((2, count), np.nan)
         windows = shot.windows or full_windows(self._rig)
         if shot.leds == (0,):
-            left, right = (self._ground(scenes[0], camera, windows[camera]) for camera in (LEFT, RIGHT))
-            return Centres(time_s, shot, uv_px, sigma_px, head, (left, right))
+            left, right = (self._ground(shot, scenes[0], camera, windows[camera]) for camera in (LEFT, RIGHT))
+            return Centres(time_s, shot, uv_px, sigma_px, head, (left, right), self._full(shot, scenes))
         if len(shot.leds) >= OUTLINE_FRAMES and not any(shot.leds):
-            uv_px, sigma_px[:] = self._outlined(scenes, windows)
-            return Centres(time_s, shot, uv_px, sigma_px, head)
+            uv_px, sigma_px[:] = self._outlined(shot, scenes, windows)
+            return Centres(time_s, shot, uv_px, sigma_px, head, saturated=self._full(shot, scenes))
         for camera in (LEFT, RIGHT):
             if any(shot.leds):
                 found = self._markers(shot, scenes, camera, windows[camera])
@@ -62,16 +62,28 @@ class CentreDeveloper:
                 found = self._middle(scenes, camera, windows[camera])
             for index, (centre, sigma) in found.items():
                 uv_px[camera, index], sigma_px[camera, index] = centre, sigma
-        return Centres(time_s, shot, uv_px, sigma_px, head)
+        return Centres(time_s, shot, uv_px, sigma_px, head, saturated=self._full(shot, scenes))
+
+    def _exposed(self, scene: SceneState, view: View, shot: Shot) -> Exposure:
+        return self._exposure.under((scene.seeing.light + view.lens.veil) * shot.exposure)
+
+    def _full(self, shot: Shot, scenes: tuple[SceneState, ...]) -> tuple[bool, bool]:
+        left, right = (
+            self._exposed(scenes[-1], view, shot).full for view in scene_views(self._rig, scenes[-1])
+        )
+        return left, right
 
     def _markers(
         self, shot: Shot, scenes: tuple[SceneState, ...], camera: int, window: Window
     ) -> dict[int, tuple[Array, float]]:
         scene = scenes[-1]
         view = scene_views(self._rig, scene)[camera]
-        exposure = self._exposure.under(scene.seeing.light + view.lens.veil)
-        lost = exposure.ground_e >= exposure.full_well_e or not steady(scenes, view)
-        spots = self._as_wired(scene, self._brightest(scene, view, window))
+        exposure = self._exposed(scene, view, shot)
+        lost = exposure.full or not steady(scenes, view)
+        spots = [
+            replace(spot, electrons=spot.electrons * shot.exposure)
+            for spot in self._as_wired(scene, self._brightest(scene, view, window))
+        ]
         coded = any(leds & (leds - 1) for leds in shot.leds)
         errors = [_error(shot, index, spot, exposure, coded) for index, spot in enumerate(spots)]
         together = joint_chance(errors) if coded else None
@@ -87,18 +99,16 @@ class CentreDeveloper:
                 found[index] = (centre, error.reported_px)
         return found
 
-    def _ground(self, scene: SceneState, camera: int, window: Window) -> Landmarks:
+    def _ground(self, shot: Shot, scene: SceneState, camera: int, window: Window) -> Landmarks:
         """The ground in a picture; nothing of it where the light is not what it was."""
         view = scene_views(self._rig, scene)[camera]
-        light = scene.seeing.light + view.lens.veil
-        exposure = self._exposure.under(light)
-        if exposure.ground_e >= exposure.full_well_e or scene.seeing.light < LEAST_LIGHT:
+        if self._exposed(scene, view, shot).full or scene.seeing.light * shot.exposure < LEAST_LIGHT:
             return nothing_seen()
         T = scene.T_site_body
         return self._marks.seen(view, window, T[:3, :3] @ _ROVER_MIDDLE_BODY_M + T[:3, 3])
 
     def _outlined(
-        self, scenes: tuple[SceneState, ...], windows: tuple[Window, Window]
+        self, shot: Shot, scenes: tuple[SceneState, ...], windows: tuple[Window, Window]
     ) -> tuple[Array, float]:
         """Where the outline puts the markers; nowhere in frames that differ or are overexposed."""
         scene = scenes[-1]
@@ -106,9 +116,7 @@ class CentreDeveloper:
         uv_px, sigma_px = self._outline.seen(
             scene, views, windows, np.array(self._rig.markers.positions_plc_m)
         )
-        exposures = [self._exposure.under(scene.seeing.light + view.lens.veil) for view in views]
-        lost = any(exposure.ground_e >= exposure.full_well_e for exposure in exposures)
-        if lost or not all(steady(scenes, view) for view in views):
+        if any(self._full(shot, scenes)) or not all(steady(scenes, view) for view in views):
             uv_px = np.full_like(uv_px, np.nan)
         return uv_px, sigma_px
 

@@ -44,7 +44,7 @@ class ImageDeveloper:
             spots, glints = self._picture.spots(scene, camera), self._picture.glints(scene, camera)
             for leds, frames in masks.items():
                 lit_e = self._picture.lit_e(unlit_e, spots, scene.seeing.lit(leds), window, glints)
-                self._expose(counts, frames, lit_e)
+                self._expose(counts, frames, lit_e * np.float32(shot.exposure))
         return counts
 
     def _expose(self, counts: NDArray[np.uint16], frames: list[int], expected_e: NDArray[np.float32]) -> None:

@@ -41,6 +41,11 @@ class Exposure:
         """Electrons a count."""
         return self.full_well_e / self.max_count
 
+    @property
+    def full(self) -> bool:
+        """Whether the ground alone fills the well."""
+        return self.ground_e >= self.full_well_e
+
     def under(self, light: float) -> Exposure:
         """The same exposure with the ground brighter or darker than it was set for."""
         return replace(self, ground_e=self.ground_e * light)

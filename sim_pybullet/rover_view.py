@@ -172,12 +172,17 @@ def _far_to_near(parts: list[_Placed], eye: Array) -> list[_Placed]:
     """An order of painting: a part comes before every part that may hide some of it."""
     waiting, order = list(parts), []
     while waiting:
-        free = [p for p in waiting if not any(_hides(p, other, eye) for other in waiting if other is not p)]
+        free = [p for p in waiting if not any(_must_follow(p, o, eye) for o in waiting if o is not p)]
         # Parts that pass through each other may hide one another in a ring: then the farthest goes first.
         chosen = max(free or waiting, key=lambda p: float(np.linalg.norm(p.vertices.mean(axis=0) - eye)))
         order.append(chosen)
         waiting = [p for p in waiting if p is not chosen]
     return order
+
+
+def _must_follow(part: _Placed, other: _Placed, eye: Array) -> bool:
+    """Whether `part` may hide some of `other`; not where either could: they lie side by side."""
+    return _hides(part, other, eye) and not _hides(other, part, eye)
 
 
 def _hides(front: _Placed, back: _Placed, eye: Array) -> bool:

@@ -7,7 +7,6 @@ the height of the ground; the prediction is off by up to 150 mm and 10 degrees.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -16,49 +15,26 @@ from executive.rig import RigCalibration
 from executive.types import HeadReading, Images, PoseEstimate, Shot, Source, Window
 from perception.body import Transform
 from perception.chain import Chain, ChainState
+from perception.choice import Rejection, noted
 from perception.codes import coded_sequence, lit
 from perception.difference import led_sequence, pair_weights
 from perception.exposure import SNR_WANTED, filter_snr_per_pair, view_of
 from perception.fisher import centre_bound, pose_bound
 from perception.follow_up import pointing_at
-from perception.joint import joint_fix
 from perception.look import look_at
+from perception.pile import Pile
 from perception.plausibility import choose
 from perception.pose import Fix, roll_pitch
 from perception.prediction import Expectation, expect
 from perception.psf import marker_spread
 from perception.roi import predicted_windows
 from perception.rotation import log_map, quat_from_matrix, rot_x, rot_y, rot_z
-from perception.stacking import Stack
-from tests.perception.synthetic import (
-    BITS,
-    GAIN_E,
-    READ_E,
-    Scene,
-    background_e,
-    marker_electrons,
-    noise_counts,
-    observed,
-    spot,
-)
+from tests.perception.synthetic import GAIN_E, Scene, noise_counts, observed
+from tests.perception.trial_camera import Disturbance, Nuisance, Stage, TrialCamera, flux_e
 
 OFF_M, OFF_RAD = 0.150, np.radians(10.0)
 GROUND_SIGMA_M = 0.020  # what the prediction allows the ground; here the truth errs by as much
 CHUNK = 64
-
-
-@dataclass(frozen=True)
-class Nuisance:
-    """What real frames do over a sequence: jitter a frame, drift in all [px], change of light in all."""
-
-    jitter_px: float = 0.0
-    drift_px: float = 0.0
-    light: float = 0.0
-    texture: float = 0.08
-
-    @property
-    def moves(self) -> bool:
-        return (self.jitter_px, self.drift_px, self.light) != (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -148,20 +124,25 @@ def run_trial(
     nuisance: Nuisance | None = None,
     dark: bool = False,
     off: tuple[float, float] = (OFF_M, OFF_RAD),
+    disturbance: Disturbance | None = None,
 ) -> Trial:
     """Draw, expose, localise; `dark` leaves the LEDs off, so that whatever is found is false.
 
-    The prediction is `off` by up to so much [m], [rad].
+    The prediction is `off` by up to so much [m], [rad]; a `disturbance` is drawn for this trial.
     """
     setting = draw(range_m, rng, rig or RigCalibration(), off)
     leds, joint = sequence_for(setting, pairs)
-    way = _jointly if joint else _singly
-    windows = windows_of(setting)
-    cameras = [
-        _Camera.of(setting.true, c, w, rng, nuisance or Nuisance(), dark) for c, w in enumerate(windows)
-    ]
-    found, weights, seconds = way(setting, cameras, windows, leds, rng)
+    stage = Stage(setting.true, windows_of(setting), leds)
+    disturbance = disturbance or Disturbance()
+    disturbance.begin(stage, rng)
+    cameras = [TrialCamera.of(stage, c, rng, nuisance or Nuisance(), disturbance, dark) for c in (0, 1)]
+    weights = _joint_weights(leds) if joint else np.linalg.norm(pair_weights(leds, 4), axis=1)
     limit = bound(setting, weights, GROUND_SIGMA_M if joint else np.inf)
+    watch = Stopwatch()
+    try:
+        found, seconds = (_jointly if joint else _singly)(setting, cameras, stage, rng)
+    except ValueError as refused:
+        found, seconds = Rejection(str(refused), 0), watch.elapsed_s()
     fix = getattr(found, "fix", None)
     why = found.why if fix is None else setting.expectation.misfit(fix.state.site_body, fix.covariance)
     if why:
@@ -177,36 +158,45 @@ def windows_of(setting: Setting) -> tuple[Window, Window]:
     return windows
 
 
-def _jointly(setting, cameras, windows, leds, rng):
-    """The joint answer, the noise of each LED's difference in frames' noises, processing time."""
-    chain, watch, unused = setting.true.chain, Stopwatch(), 0.0
-    stacks = [Stack(4, chain.rig.sensor.noise_counts) for _ in cameras]
-    for first in range(0, len(leds), CHUNK):
+def _jointly(setting, cameras, stage, rng):
+    """The joint answer and its processing time."""
+    watch, unused = Stopwatch(), 0.0
+    pile = Pile(setting.true.chain)
+    for first in range(0, len(stage.leds), CHUNK):
         part = slice(first, first + CHUNK)
-        for camera, stack in zip(cameras, stacks, strict=True):
-            before = watch.elapsed_s()
-            frames = camera.expose(leds, part, rng)
-            unused += watch.elapsed_s() - before
-            stack.add(frames, leds[part])
-    spread = marker_spread(chain.rig, view_of(chain, setting.expectation.state).range_m)
-    corners = [(w.u, w.v) for w in windows]
-    differences = [stack.difference() for stack in stacks]
-    found = joint_fix(chain, differences, corners, spread, setting.expectation, setting.tilt_rad)
-    seconds = watch.elapsed_s() - unused
-    scatter = np.cov(lit(leds, 4).T, bias=True) * len(leds)
-    return found, np.sqrt(np.diag(np.linalg.inv(scatter))), seconds
+        before = watch.elapsed_s()
+        counts = tuple(camera.expose(part, rng) for camera in cameras)
+        unused += watch.elapsed_s() - before
+        pile.add(_images(setting, stage, part, counts))
+        if pile.problem:
+            return Rejection(pile.problem, 0), watch.elapsed_s() - unused
+    return pile.answer(setting.expectation, setting.tilt_rad, 1.0), watch.elapsed_s() - unused
 
 
-def _singly(setting, cameras, windows, leds, rng):
+def _singly(setting, cameras, stage, rng):
     """The same for markers found one by one."""
     chain, said = setting.true.chain, setting.said
-    counts = tuple(camera.expose(leds, slice(None), rng) for camera in cameras)
-    images = Images(0.0, Shot(leds), windows, counts, HeadReading(0.0, *said.head_rad, moving=False))
+    counts = tuple(camera.expose(slice(None), rng) for camera in cameras)
     watch = Stopwatch()
+    images = _images(setting, stage, slice(None), counts)
     look = look_at(chain.rig, images, view_of(chain, setting.expectation.state).range_m)
+    if look.problem:
+        return Rejection(look.problem, 0), watch.elapsed_s()
     prior = setting.expectation.prior
     found = choose(chain, look.candidates, said.head_rad, said.joints_rad, setting.tilt_rad, prior)
-    return found, np.linalg.norm(pair_weights(leds, 4), axis=1), watch.elapsed_s()
+    return noted(found, look.note), watch.elapsed_s()
+
+
+def _images(setting, stage, part, counts) -> Images:
+    """Frames of a part of the sequence as the cameras would return them."""
+    head = HeadReading(0.0, *setting.said.head_rad, moving=False)
+    return Images(0.0, Shot(stage.leds[part]), stage.windows, counts, head)
+
+
+def _joint_weights(leds: tuple[int, ...]) -> np.ndarray:
+    """The noise of each LED's difference image in frames' noises."""
+    scatter = np.cov(lit(leds, 4).T, bias=True) * len(leds)
+    return np.sqrt(np.diag(np.linalg.inv(scatter)))
 
 
 def _error(true: Transform, fix: Fix) -> np.ndarray:
@@ -223,72 +213,5 @@ def bound(setting: Setting, weights: np.ndarray, height_sigma_m: float) -> np.nd
             spread = marker_spread(scene.chain.rig, float(scene.ranges_m[c, m]))
             off = scene.uv_px[c, m] - np.round(scene.uv_px[c, m])
             sigma = noise_counts() * float(weights[m])
-            covariance[c, m] = centre_bound(spread, _flux_e(scene, c, m) / GAIN_E, sigma, off)
+            covariance[c, m] = centre_bound(spread, flux_e(scene, c, m) / GAIN_E, sigma, off)
     return pose_bound(scene.chain, scene.state, covariance, height_sigma_m=height_sigma_m)
-
-
-def _flux_e(scene: Scene, c: int, m: int) -> float:
-    return marker_electrons(scene.ranges_m[c, m]) * (1 + scene.cosines[c, m]) / 2
-
-
-@dataclass
-class _Camera:
-    """A window's expected images: the ground with its slopes, and the patch of light of each LED [e-]."""
-
-    ground_e: np.ndarray
-    slopes_e: tuple[np.ndarray, np.ndarray] | None
-    spots_e: list[tuple[tuple[slice, slice], np.ndarray]]
-    nuisance: Nuisance
-
-    @classmethod
-    def of(cls, scene: Scene, c: int, w: Window, rng, nuisance: Nuisance, dark: bool) -> _Camera:
-        ground = _ground_e(nuisance.texture, w, rng)
-        slopes = tuple(np.gradient(ground)[::-1]) if nuisance.moves else None
-        spots = [_spot_e(scene, c, m, w, 0.0 if dark else _flux_e(scene, c, m)) for m in range(4)]
-        return cls(ground, slopes, spots, nuisance)
-
-    def expose(self, leds: tuple[int, ...], part: slice, rng) -> np.ndarray:
-        """Frames of a part of the sequence [counts]."""
-        masks = leds[part]
-        first = part.start or 0
-        frames = rng.standard_normal((len(masks), *self.ground_e.shape), dtype=np.float32)
-        for k, mask in enumerate(masks):
-            expected = self._moved((first + k) / len(leds), rng)
-            for m, (place, light) in enumerate(self.spots_e):
-                if mask >> m & 1:
-                    expected[place] += light
-            frames[k] *= np.sqrt(expected + READ_E**2)
-            frames[k] += expected
-        frames /= np.float32(GAIN_E)
-        np.rint(frames, out=frames)
-        return np.clip(frames, 0, 2**BITS - 1, out=frames).astype(np.uint16)
-
-    def _moved(self, progress: float, rng) -> np.ndarray:
-        n = self.nuisance
-        if self.slopes_e is None:
-            return self.ground_e.copy()
-        du, dv = n.drift_px * progress + n.jitter_px * rng.standard_normal(2)
-        moved = self.ground_e - du * self.slopes_e[0] - dv * self.slopes_e[1]
-        return moved * (1 + n.light * np.sin(2 * np.pi * progress))
-
-
-@cache
-def _sheet_e(texture: float) -> np.ndarray:
-    """Ground for all trials, made once; each takes a place of its own."""
-    return background_e(np.random.default_rng(0), (2048, 2048), texture).astype(np.float32)
-
-
-def _ground_e(texture: float, w: Window, rng) -> np.ndarray:
-    v, u = (int(rng.integers(2048 - size + 1)) for size in (w.height, w.width))
-    return _sheet_e(texture)[v : v + w.height, u : u + w.width]
-
-
-def _spot_e(scene: Scene, c: int, m: int, w: Window, flux_e: float):
-    """Where one LED's light falls in the window, and how much."""
-    u, v = scene.uv_px[c, m] - (w.u, w.v)
-    reach = 4 * marker_spread(scene.chain.rig, float(scene.ranges_m[c, m])).radius_px
-    left, top = (max(round(float(at)) - reach, 0) for at in (u, v))
-    place = slice(top, max(top + 2 * reach, 0)), slice(left, max(left + 2 * reach, 0))
-    height, width = (len(range(n)[s]) for n, s in zip((w.height, w.width), place, strict=True))
-    light = spot((height, width), u - left, v - top, scene.ranges_m[c, m])
-    return place, (flux_e * light).astype(np.float32)

@@ -18,6 +18,7 @@ from perception.body import Transform
 from perception.chain import Chain, ChainState
 from perception.follow_up import pointing_at
 from perception.rotation import exp_map
+from tests.perception.sensor.noise import add_noise
 
 FULL_WELL_E, BACKGROUND, READ_E, BITS = 160_000.0, 0.40, 40.0, 10
 GAIN_E = FULL_WELL_E / (2**BITS - 1)
@@ -32,14 +33,16 @@ def blur_sigma_px(range_m: float) -> float:
     return float(np.hypot(0.5, 5.47 * abs(1 / range_m - 1 / 20.0) / 4))
 
 
-def spot(shape: tuple[int, int], u: float, v: float, range_m: float, grid: int = 9) -> np.ndarray:
+def spot(
+    shape: tuple[int, int], u: float, v: float, range_m: float, grid: int = 9, widen: float = 1.0
+) -> np.ndarray:
     """Shares of light of one marker in an image of this shape; sums to 1 inside a large one."""
     side = 2500.0 * 0.003 / range_m
     steps = (np.arange(grid) + 0.5) / grid - 0.5
 
     def line(n: int, centre: float) -> np.ndarray:
         edges = (np.arange(n + 1) - 0.5)[:, None] - (centre + side * steps)[None]
-        cumulative = 0.5 * (1 + erf(edges / (np.sqrt(2) * blur_sigma_px(range_m))))
+        cumulative = 0.5 * (1 + erf(edges / (np.sqrt(2) * widen * blur_sigma_px(range_m))))
         return np.diff(cumulative, axis=0).mean(axis=1)
 
     return np.outer(line(shape[0], v), line(shape[1], u))
@@ -60,8 +63,10 @@ def background_e(rng: np.random.Generator, shape: tuple[int, int], texture: floa
 
 
 def expose(rng: np.random.Generator, expected_e: np.ndarray) -> np.ndarray:
-    noisy = expected_e + np.sqrt(expected_e + READ_E**2) * rng.standard_normal(expected_e.shape)
-    return np.clip(np.rint(noisy / GAIN_E), 0, 2**BITS - 1).astype(np.uint16)
+    """A frame (h, w) of what is expected [e-], with a real sensor's noise [counts]."""
+    counts = np.empty(expected_e.shape, dtype=np.uint16)
+    add_noise(rng, np.ascontiguousarray(expected_e), READ_E, GAIN_E, 2.0**BITS - 1, counts)
+    return counts
 
 
 def sequence(

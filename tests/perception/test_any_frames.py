@@ -11,9 +11,9 @@ from perception.codes import coded_sequence
 from perception.difference import led_sequence
 from perception.joint import JointFix
 from perception.look import look_at
+from perception.moving_rover import moving_rover
 from perception.pile import Pile
 from perception.plausibility import Choice, Rejection, choose
-from perception.trend import centroids
 from tests.perception.far_trials import draw, windows_of
 
 RIG = RigCalibration()
@@ -126,6 +126,14 @@ def test_frames_without_a_rover_give_a_reason_far_off(left, right, seed):
     assert answer.why
 
 
+@ANY
+@given(left=CONTENTS, right=CONTENTS, seed=st.integers(0, 99))
+def test_frames_without_a_rover_show_none_that_moves(left, right, seed):
+    rng, (a, b) = np.random.default_rng(seed), windows_of(NEAR)
+    counts = (stack(a, 2, left, rng), stack(b, 2, right, rng))
+    assert moving_rover(NEAR.true.chain, NEAR.expectation, images(NEAR, (0, 0), counts), 3.0) is None
+
+
 @pytest.mark.parametrize("how", DAMAGES)
 @pytest.mark.parametrize("side", [0, 1])
 def test_what_is_no_stack_of_grey_frames_is_refused_with_what_was_expected(how, side):
@@ -144,7 +152,7 @@ def test_a_moving_rover_is_not_looked_for_in_what_is_no_frame(how):
     good = [stack(w, 2, "faint noise", np.random.default_rng(4)) for w in windows]
     good[1] = damage(good[1], how)
     with pytest.raises(ValueError, match=r"got .*expected"):
-        centroids(RIG, images(NEAR, (0, 0), tuple(good)), 3.0)
+        moving_rover(NEAR.true.chain, NEAR.expectation, images(NEAR, (0, 0), tuple(good)), 3.0)
 
 
 def test_one_camera_for_two_is_refused():

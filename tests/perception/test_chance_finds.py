@@ -12,8 +12,10 @@ from perception.chain import STATE_SIZE
 from perception.chance_finds import joint_threshold, log_distinct_poses, unit_information
 from perception.difference import Difference
 from perception.exposure import view_of
-from perception.likelihood import Evidence, _Point, most_likely, observed_covariance
+from perception.kernels.climb import point_at
+from perception.likelihood import Evidence, most_likely, place_of, task_of
 from perception.pose import Readings, Sighting
+from perception.posterior import posterior
 from perception.psf import marker_spread
 from tests.perception.far_trials import draw
 from tests.perception.synthetic import spot
@@ -66,35 +68,38 @@ def test_a_region_without_volume_or_a_rate_that_is_none_is_refused(setting, read
 
 
 def test_the_covariance_of_a_faint_rover_allows_for_the_tails_of_its_peak(setting, readings, spread):
-    """Weighs states drawn from the curvature's Gaussian by the likelihood itself."""
+    """Against a chain of random steps over states and flux, which knows nothing of curvatures."""
     chain, state = setting.true.chain, setting.said
-    exact = replace(readings, encoder=np.array([*state.head_rad, *state.joints_rad]))
+    exact = replace(readings, measured=readings.measured._replace(encoder_rad=state.angles_rad))
     evidence, flux = _noiseless(chain, state, spread, snr=8.0)
     peak = most_likely(chain, evidence, exact, state, np.full(4, flux), shared=True)
-    told = observed_covariance(chain, evidence, exact, peak, shared=True)
+    mean, told = posterior(chain, evidence, exact, peak, shared=True)
 
-    together = np.ones((4, 1))
-    at = _Point.of(chain, evidence, exact, peak.state, peak.flux_counts, together)
-    rng = np.random.default_rng(5)
-    steps = rng.multivariate_normal(np.zeros(STATE_SIZE + 1), np.linalg.inv(at.information), 3000)
-    gaussian = -0.5 * np.einsum("ni,ij,nj->n", steps, at.information, steps)
-    value = np.array(
-        [
-            _Point.of(
-                chain, evidence, exact, peak.state.moved(s[:10]), peak.flux_counts + s[10], together
-            ).value
-            for s in steps
-        ]
-    )
-    weight = np.exp(np.clip((value - at.value) / 2 - gaussian, None, 3.0))
+    walked = _walk(chain, evidence, exact, peak, np.random.default_rng(5), 12000)
     free = [0, 1, 5]
-    of_peak = np.average(steps[:, free] ** 2, axis=0, weights=weight)
-    of_curvature = (steps[:, free] ** 2).mean(axis=0)
-    grown = np.diag(told)[free] / np.linalg.inv(at.information).diagonal()[free]
-    tails = of_peak / of_curvature
-    assert (tails > 1.1).all()
-    assert (grown > 1 + (tails - 1) / 4).all()  # to first order
-    assert (grown <= tails).all()
+    sigma = walked[:, free].std(axis=0)
+    np.testing.assert_allclose(np.sqrt(np.diag(told))[free], sigma, rtol=0.15)
+    assert (sigma > 1.04 * np.sqrt(np.diag(peak.covariance))[free]).all()  # than the peak's curvature says
+    off = mean.site_body.position_m - peak.state.site_body.position_m
+    assert (np.abs(off[:2] - walked[:, :2].mean(axis=0)) < 0.3 * sigma[:2]).all()
+
+
+def _walk(chain, evidence, readings, peak, rng, count):
+    """Steps (count, 11) of state and flux from the peak, by Metropolis's rule."""
+    task = task_of(chain, evidence, readings, peak.flux_counts, shared=True)
+
+    def value(s):
+        return point_at(task, place_of(peak.state.moved(s[:10]), peak.flux_counts + s[10])).value / 2
+
+    information = point_at(task, place_of(peak.state, peak.flux_counts)).information
+    proposals = rng.multivariate_normal(np.zeros(11), 0.35 * np.linalg.inv(information), count)
+    here, height, walked = np.zeros(11), value(np.zeros(11)), []
+    for step, luck in zip(proposals, np.log(rng.random(count)), strict=True):
+        there = value(here + step)
+        if luck < there - height:
+            here, height = here + step, there
+        walked.append(here)
+    return np.array(walked)
 
 
 def _noiseless(chain, state, spread, snr):

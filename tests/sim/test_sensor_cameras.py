@@ -131,6 +131,7 @@ def test_cancelled_and_replaced_shots_end_cancelled():
         Shot((0,), (_WINDOWS[0], Window(5, 5, 0, 10))),
         Shot((), _WINDOWS),
         Shot((0,), _WINDOWS, cadence_s=0.0),
+        Shot((0,), _WINDOWS, exposure=0.0),
     ],
 )
 def test_a_shot_that_cannot_be_taken_is_refused_at_once_with_the_reason(shot):
@@ -154,3 +155,10 @@ def test_same_seed_same_answer_another_seed_another(tier):
 def test_an_unknown_tier_is_named():
     with pytest.raises(ValueError, match="tier: got 'cheap', expected one of full, geometric"):
         Rig("cheap")
+
+
+def test_half_the_exposure_gathers_half_the_light():
+    whole, half = (
+        Rig("full").shoot(Shot((0,), _WINDOWS, exposure=e)).value.counts[0].mean() for e in (1.0, 0.5)
+    )
+    assert half == pytest.approx(whole / 2, rel=0.01)

@@ -169,6 +169,19 @@ def test_the_error_model_agrees_with_centres_fitted_in_images(range_m, pairs):
     assert rms == pytest.approx(said, rel=0.15)
 
 
+def test_stray_light_that_fills_the_wells_is_said_and_half_the_exposure_shows_the_markers_again():
+    scene = scene_at(flat_ground(), 2.0, 0.0)
+    lenses = tuple(replace(lens, veil=2.5) for lens in scene.seeing.lenses)
+    veiled = replace(scene, seeing=replace(scene.seeing, lenses=lenses))
+    clear = _centres(Shot(_sequence(20)), scene)[0]
+    full, half = (_centres(Shot(_sequence(20), exposure=e), veiled)[0] for e in (1.0, 0.5))
+    assert clear.saturated == half.saturated == (False, False)
+    assert full.saturated == (True, True)
+    assert not np.isfinite(full.uv_px).any()
+    assert np.isfinite(half.uv_px).all()
+    assert half.sigma_px.mean() > 1.5 * clear.sigma_px.mean()
+
+
 def _outlined(scene, windows=None, times=1):
     answers = _centres(Shot((0,) * 8, windows), scene, times)
     return np.array([a.uv_px for a in answers]), answers[0].sigma_px[0, 0]
