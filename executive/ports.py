@@ -145,12 +145,22 @@ class Backend(Protocol):
 
 @dataclass(frozen=True)
 class LocaliseRequest:
-    """A localisation asked for: its quality, where to look, how long it may take, and where the way leads."""
+    """A localisation asked for: its quality, where to look, how long it may take, and where the way leads.
+
+    Standard deviations that it names [m, rad] replace those of the quality; 0 names none. ValueError below 0.
+    """
 
     quality: Quality
     predicted: PoseEstimate
     budget_s: float = 600.0
     segment: Segment | None = None
+    position_sigma_m: float = 0.0
+    heading_sigma_rad: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("position_sigma_m", "heading_sigma_rad"):
+            if not getattr(self, name) >= 0:
+                raise ValueError(f"{name}: got {getattr(self, name)}, expected 0 or more")
 
 
 class Localizer(Protocol):

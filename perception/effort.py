@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from executive.ports import LocaliseRequest
 from executive.types import Array, Quality
 from perception.chain import Chain
 from perception.exposure import filter_snr_per_pair, pairs_needed, view_of
@@ -37,6 +38,13 @@ WANTED = {
     Quality.PRECISE: Wanted(0.030, math.radians(1.0), 320),
     Quality.FAR: Wanted(0.015, math.radians(0.5), 800),
 }
+
+
+def wanted_by(request: LocaliseRequest) -> Wanted:
+    """What a request asks for: the accuracy of its quality, or its own where it says one."""
+    usual = WANTED[request.quality]
+    position_m = request.position_sigma_m or usual.position_m
+    return replace(usual, position_m=position_m, heading_rad=request.heading_sigma_rad or usual.heading_rad)
 
 
 def seen_singly(chain: Chain, expectation: Expectation) -> bool:

@@ -15,7 +15,7 @@ class Localisation:
     """The last look. Pixel arrays are full-frame, shape (2 cameras, n markers, 2), NaN where none.
 
     `reference` holds the dark mean images of both windows [counts], None in the geometric tier;
-    `why` is empty for a success.
+    `why` is empty for a success. `frames` and `took_s` are the cost of the whole localisation.
     """
 
     time_s: float
@@ -29,6 +29,8 @@ class Localisation:
     chi2: float
     dof: int
     why: str
+    frames: int = 0
+    took_s: float = 0.0
 
     @property
     def markers(self) -> int:

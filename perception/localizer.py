@@ -42,6 +42,7 @@ from perception.rotation import quat_from_matrix
 from perception.routine import Routine, Steps
 from perception.scouting import Scout
 from perception.sight import Eyes, Sight
+from perception.tally import Tally
 from perception.tendency import Tendency
 
 
@@ -51,6 +52,8 @@ class LedStereoLocalizer:
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
         self._clock = clock
         self._chain = Chain.of(rig)
+        self._tally = Tally(devices.cameras, clock)
+        devices = replace(devices, cameras=self._tally)
         self._aim = Aim(devices, self._chain, clock)
         self._eyes = Eyes(devices, rig, clock)
         self._tendency = Tendency(devices, self._chain, clock, self._aim, self._eyes)
@@ -65,7 +68,7 @@ class LedStereoLocalizer:
         deadline = self._clock.now_s + request.budget_s
         if request.quality is Quality.TREND:
             return Routine(self._moving(request, deadline))
-        return Routine(self._watched_fix(request, deadline))
+        return Routine(self._accounted(request, deadline))
 
     def views(self) -> tuple[Seen, ...]:
         """What the last look showed; see executive.ports.Localizer."""
@@ -86,6 +89,14 @@ class LedStereoLocalizer:
         outcome = yield from self._tendency.measure(request, deadline)
         self.last = self._tendency.last or self.last
         return outcome
+
+    def _accounted(self, request: LocaliseRequest, deadline: float) -> Steps[Outcome[PoseEstimate]]:
+        """A fix, or none, with what it cost."""
+        self._tally.begin()
+        outcome = yield from self._watched_fix(request, deadline)
+        if self.last is not None:
+            self.last = replace(self.last, frames=self._tally.frames, took_s=self._tally.took_s)
+        return replace(outcome, detail="; ".join(filter(None, (outcome.detail, self._tally.told()))))
 
     # -- the head, before and after a fix
 
@@ -119,7 +130,7 @@ class LedStereoLocalizer:
             if turned is not None:
                 return turned
             expectation = self._aim.expectation(request.predicted)
-            sight = yield from self._eyes.look(expectation, LADDER[rung].scope, request.quality, deadline)
+            sight = yield from self._eyes.look(expectation, LADDER[rung].scope, request, deadline)
             if sight is None:
                 break
             if isinstance(sight, Outcome):
@@ -170,7 +181,7 @@ class LedStereoLocalizer:
         """POOR_VIEW where the prediction explains that nothing was seen, NOT_SEEN otherwise."""
         expectation = self._aim.expectation(request.predicted)
         view = view_of(self._chain, expectation.state)
-        pairs, most = self._eyes.most_pairs(expectation, request.quality)
+        pairs, most = self._eyes.most_pairs(expectation, request)
         if view.cosine <= 0 or pairs > most:
             return Outcome(Reason.POOR_VIEW, f"{why}; {_describe(view, pairs)}, at most {most}")
         return Outcome(Reason.NOT_SEEN, f"{why}; {_describe(view, pairs)}")

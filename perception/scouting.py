@@ -13,7 +13,7 @@ from perception.aim import Aim
 from perception.chain import Chain
 from perception.empty_views import EmptyView, EmptyViews
 from perception.follow_up import pointing_at
-from perception.frames import check_frames, saturation
+from perception.frames import check_frames, overexposed
 from perception.routine import Steps, wait_for
 
 FRAMES = 8
@@ -78,15 +78,13 @@ class Scout:
         taken = yield from wait_for(self._devices.cameras.take(Shot(UNLIT)), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return None
-        head = taken.value.head
-        view = self._would_be((head.pan_rad, head.tilt_rad), rover)
-        if not isinstance(taken.value, Images):
-            return view
-        sensor = self._chain.rig.sensor
-        check_frames(taken.value, sensor)
-        if any(saturation(counts, sensor) for counts in taken.value.counts):
+        data, sensor = taken.value, self._chain.rig.sensor
+        if isinstance(data, Images):
+            check_frames(data, sensor)
+        if overexposed(data, sensor):
             return None
-        return view.of(taken.value)
+        view = self._would_be((data.head.pan_rad, data.head.tilt_rad), rover)
+        return view.of(data) if isinstance(data, Images) else view
 
 
 def places_ahead(rover: PoseEstimate, segment: Segment) -> Array:

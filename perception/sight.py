@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.clock import Clock
-from executive.ports import Devices
+from executive.ports import Devices, LocaliseRequest
 from executive.rig import RigCalibration
 from executive.types import Array, Centres, Images, Outcome, Quality, Shot, Window
 from perception.chain import Chain
 from perception.codes import coded_sequence
 from perception.difference import led_sequence
-from perception.effort import WANTED, joint_pairs, more_pairs, seen_singly
+from perception.effort import joint_pairs, more_pairs, seen_singly, wanted_by
 from perception.exposure import filter_snr_per_pair, pairs_needed, view_of
 from perception.frames import overexposed
 from perception.joint import JointFix
@@ -70,26 +70,27 @@ class Eyes:
         self._cadence_s = Shot(leds=(0,)).cadence_s
 
     def look(
-        self, expectation: Expectation, scope: Scope, quality: Quality, deadline_s: float
+        self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
     ) -> Steps[Outcome[Sight] | Sight | None]:
         """Look for the markers of the expected rover."""
         windows = self._marker_windows(expectation, scope)
         if self._light.exposure < 1.0:
             yield from self._light.measure(windows, deadline_s)
         way = self._singly if seen_singly(self._chain, expectation) else self._jointly
-        sight = yield from way(expectation, scope, quality, deadline_s)
+        sight = yield from way(expectation, scope, request, deadline_s)
         if isinstance(sight, Sight) and overexposed(sight.data, self._rig.sensor):
             showed = yield from self._light.measure(windows, deadline_s)
             if showed and self._light.exposure < sight.data.shot.exposure:
-                return (yield from way(expectation, scope, quality, deadline_s)) or sight
+                return (yield from way(expectation, scope, request, deadline_s)) or sight
         return sight
 
-    def most_pairs(self, expectation: Expectation, quality: Quality) -> tuple[float, int]:
+    def most_pairs(self, expectation: Expectation, request: LocaliseRequest) -> tuple[float, int]:
         """Pairs that the expected view needs for detection or more, and the most that would be taken."""
         if seen_singly(self._chain, expectation):
             snr = filter_snr_per_pair(self._rig, view_of(self._chain, expectation.state))
-            return pairs_needed(snr), SINGLE_MOST_PAIRS[quality]
-        return joint_pairs(self._chain, expectation, WANTED[quality]), WANTED[quality].most_pairs
+            return pairs_needed(snr), SINGLE_MOST_PAIRS[request.quality]
+        wanted = wanted_by(request)
+        return joint_pairs(self._chain, expectation, wanted), wanted.most_pairs
 
     def windows(
         self, expectation: Expectation, widen: float | None, margin_px: float
@@ -103,7 +104,7 @@ class Eyes:
         return found or full_windows(self._chain)
 
     def _singly(
-        self, expectation: Expectation, scope: Scope, quality: Quality, deadline_s: float
+        self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
     ) -> Steps[Outcome[Sight] | Sight | None]:
         """Each LED by itself, reference frames between."""
         markers = len(self._chain.markers_plc_m)
@@ -112,7 +113,7 @@ class Eyes:
         by_memory = (self._frames_at_once(windows) - 1) // (markers + 1)
         by_time = (self._frames_until(deadline_s) - 1) // (markers + 1)
         wanted = pairs_needed(snr) * scope.pairs_factor * self._light.pairs_factor
-        pairs = int(min(wanted, SINGLE_MOST_PAIRS[quality], max(by_memory, 1), by_time))
+        pairs = int(min(wanted, SINGLE_MOST_PAIRS[request.quality], max(by_memory, 1), by_time))
         if pairs < 1:
             return None
         shot = self._shot(led_sequence(markers, pairs), windows)
@@ -131,10 +132,10 @@ class Eyes:
         return Sight(data, pairs, len(shot.leds), found.reference, centres, found.problem, answer)
 
     def _jointly(
-        self, expectation: Expectation, scope: Scope, quality: Quality, deadline_s: float
+        self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
     ) -> Steps[Outcome[Sight] | Sight | None]:
         """All LEDs coded at once, shot upon shot, until the pose is as good as wanted."""
-        wanted, windows = WANTED[quality], self._marker_windows(expectation, scope)
+        wanted, windows = wanted_by(request), self._marker_windows(expectation, scope)
         at_once = max(self._frames_at_once(windows) // 2, _LEAST_CODED_PAIRS)
         most = at_once if windows == full_windows(self._chain) else wanted.most_pairs
         pile, sight, pairs = Pile(self._chain), None, 0

@@ -7,7 +7,7 @@ from executive.nodes.base import FromTree, In, InOut
 from executive.ports import Action, LocaliseRequest
 from executive.prediction import unusable
 from executive.types import Outcome, PoseEstimate, Quality, Reason, Segment, Source
-from executive.values import DURATION, POSE, QUALITY, SEGMENT
+from executive.values import ANGLE, DURATION, LENGTH, POSE, QUALITY, SEGMENT
 
 
 class Localise(ActionLeaf):
@@ -17,6 +17,8 @@ class Localise(ActionLeaf):
     pose = InOut[PoseEstimate](POSE, "the pose, as measured")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
     budget = In[float](DURATION, "mission time it may take", default=900.0)
+    position = In[float](LENGTH, "standard deviation wanted; 0: that of the quality", default=0.0)
+    yaw = In[float](ANGLE, "standard deviation wanted; 0: that of the quality", default=0.0)
     settle = In[float](DURATION, "time at rest before the first exposure", default=5.0)
 
     outcomes = (
@@ -46,7 +48,7 @@ class Localise(ActionLeaf):
 
     def request(self) -> Action[PoseEstimate]:
         predicted = self.services.classification.predicted()
-        request = LocaliseRequest(self.quality, predicted, self.budget, self.segment)
+        request = LocaliseRequest(self.quality, predicted, self.budget, self.segment, self.position, self.yaw)
         return self.services.localizer.locate(request)
 
     def finish(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:

@@ -74,7 +74,7 @@ def _judged(image: Array, laid: Array, moved: Array, gain: float, noise: float) 
     problem = ""
     if texture > _PLAIN * noise and explained < _LEAST_EXPLAINED:
         problem = f"the background explains {explained:.0%} of the ground seen, {_LEAST_EXPLAINED:.0%} needed"
-    if not 1 / _MOST_LIGHT <= gain <= _MOST_LIGHT:
+    elif not 1 / _MOST_LIGHT <= gain <= _MOST_LIGHT:
         problem = f"the ground shows {gain:.2f} times the contrast that it had"
     return Background(laid, sigma, moved, gain, explained, problem)
 

@@ -79,6 +79,27 @@ def test_far_asks_for_more_pairs_than_precise_and_gets_nearer():
     assert sigmas[Quality.FAR] > 1.5 * sigmas[Quality.PRECISE]
 
 
+def test_an_accuracy_asked_for_replaces_that_of_the_quality():
+    frames = {}
+    for position_m in (0.0, 0.012, 0.1):
+        r = robot(12.0, geometric=True, joints=(0.0, 1.0))
+        request = LocaliseRequest(Quality.PRECISE, r.predicted(), position_sigma_m=position_m)
+        assert r.run(localizer(r).locate(request)).ok
+        frames[position_m] = sum(len(shot.leds) for shot in r.shots)
+    assert frames[0.1] <= frames[0.0] < frames[0.012]
+
+
+def test_every_answer_says_what_it_cost():
+    for hidden in (set(), {0, 1, 2, 3}):
+        r = robot(geometric=True, hidden=hidden)
+        found = localizer(r)
+        outcome = r.run(found.locate(LocaliseRequest(Quality.PRECISE, r.predicted(), budget_s=300.0)))
+        frames = sum(len(shot.leds) for shot in (*r.shots, *r.pictures))
+        assert outcome.detail.endswith(f"{frames} frames, {r.clock.now_s:.0f} s in all")
+        assert found.last.frames == frames
+        assert found.last.took_s == r.clock.now_s
+
+
 def test_pairs_are_added_until_the_pose_is_as_good_as_wanted():
     r = robot(14.0, joints=(0.0, 1.0), brightness=0.8)
     outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted())))

@@ -153,23 +153,33 @@ def setting():
     return draw(5.0, Wrong.NOTHING, np.random.default_rng(3))
 
 
+def in_frames(stacks, windows):
+    """Full frames that show these stacks in their windows, and nothing around."""
+    whole = []
+    for frames, w in zip(stacks, windows, strict=True):
+        full = np.full((len(frames), 1024, 1024), np.median(frames), dtype=np.uint16)
+        full[:, w.v : w.v + w.height, w.u : w.u + w.width] = frames
+        whole.append(full)
+    return whole
+
+
 def in_images(setting, images=None):
-    """What comes of images (those of the setting) against full frames that hold its empty views."""
+    """What comes of images (those of the setting) against its empty views."""
     state = setting.expectation.state
-    mean = tuple(np.zeros((1024, 1024), dtype=np.uint16) for _ in range(2))
-    for whole, frames, w in zip(mean, setting.backgrounds, setting.windows, strict=True):
-        whole[w.v : w.v + w.height, w.u : w.u + w.width] = np.rint(16 * frames.mean(axis=0))
+    empty = in_frames(setting.backgrounds, setting.windows)
+    full = in_frames(images or setting.images, setting.windows)
     views = EmptyViews(setting.chain)
+    mean = tuple(np.rint(16 * frames.mean(axis=0)).astype(np.uint16) for frames in empty)
     views.add(EmptyView(5.0, state.head_rad, np.full((2, 4), np.nan), mean))
     r = robot()
     r.state = state
-    images = images or setting.images
 
     def take(shot):
         head = HeadReading(0.0, *state.head_rad, moving=False)
-        return After(
-            r.clock, 0.0, Outcome(Reason.DONE, value=Images(6.0, shot, shot.windows, tuple(images), head))
+        counts = tuple(
+            f[:, w.v : w.v + w.height, w.u : w.u + w.width] for f, w in zip(full, shot.windows, strict=True)
         )
+        return After(r.clock, 0.0, Outcome(Reason.DONE, value=Images(6.0, shot, shot.windows, counts, head)))
 
     r.take = take
     aim = Aim(r.devices, setting.chain, r.clock)
