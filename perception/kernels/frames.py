@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +9,8 @@ from perception.kernels.compiled import compiled
 
 Counts = NDArray[np.uint16]
 Frames = NDArray[np.float32]
+
+_BLOCK = 4096  # pixels that stay in the cache while all frames are gone through
 
 
 @compiled
@@ -46,17 +46,36 @@ def equalised(
     n, height, width = stack.shape
     pixels, bound = height * width, np.float32(limit)
     flat, middle, by = stack.reshape((n, pixels)), mean.reshape(pixels), weighted.reshape((4, pixels))
-    along_u, along_v, contrast, one = basis.reshape((4, pixels))
-    coefficients, rest = np.empty((n, 4), dtype=np.float32), np.empty(n, dtype=np.float32)
-    frames, off = np.empty((n, pixels), dtype=np.float32), np.empty(pixels, dtype=np.float32)
-    for k in range(n):
-        for p in range(pixels):
-            off[p] = np.float32(flat[k, p]) - middle[p]
-        coefficients[k] = inverse @ (by @ off)
-        a, b, c, d = coefficients[k]
-        for p in range(pixels):
-            left = off[p] - a * along_u[p] - b * along_v[p] - c * contrast[p] - d * one[p]
-            frames[k, p] = left + middle[p]
-            off[p] = min(max(left, -bound), bound)
-        rest[k] = math.sqrt(np.dot(off, off) / np.float32(pixels))
+    dots, squares = np.zeros((n, 4), dtype=np.float32), np.zeros(n, dtype=np.float32)
+    frames, off = np.empty((n, pixels), dtype=np.float32), np.empty(_BLOCK, dtype=np.float32)
+    for start in range(0, pixels, _BLOCK):
+        block = slice(start, min(start + _BLOCK, pixels))
+        usual = middle[block]
+        for k in range(n):
+            frame = flat[k, block]
+            for p in range(len(usual)):
+                off[p] = np.float32(frame[p]) - usual[p]
+            for i in range(4):
+                dots[k, i] += np.dot(by[i, block], off[: len(usual)])
+    coefficients = dots @ inverse.T
+    columns = basis.reshape((4, pixels))
+    for start in range(0, pixels, _BLOCK):
+        block = slice(start, min(start + _BLOCK, pixels))
+        usual = middle[block]
+        along_u, along_v, contrast, one = (
+            columns[0, block],
+            columns[1, block],
+            columns[2, block],
+            columns[3, block],
+        )
+        for k in range(n):
+            a, b, c, d = coefficients[k]
+            frame, freed = flat[k, block], frames[k, block]
+            for p in range(len(usual)):
+                fit = a * along_u[p] + b * along_v[p] + c * contrast[p] + d * one[p]
+                left = np.float32(frame[p]) - usual[p] - fit
+                freed[p] = left + usual[p]
+                off[p] = min(max(left, -bound), bound)
+            squares[k] += np.dot(off[: len(usual)], off[: len(usual)])
+    rest = np.sqrt(squares / np.float32(pixels))
     return coefficients, rest, frames.reshape(stack.shape)
