@@ -3,23 +3,27 @@
 A frame that shows the same scene under slightly other light, from a head that quivers a little, is
     frame = mean - du * mean_u - dv * mean_v + gain * (mean - average) + offset + noise.
 The fit is taken out of the frame (it would leak background texture into the difference image) as long as
-it is small; a large one, or a large rest, means that the sequence does not show one scene.
+it is small; a large one, or a large rest, means that the sequence does not show one scene. A head that
+trembles by pixels is no such case: its frames are brought onto one another first (perception.trembling).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from executive.types import Array
 from perception.checks import as_finite
+from perception.trembling import coarse_shifts, moved_back, shown_by_all, unknown_px
 
 Frames = NDArray[np.float32]
 
 _MARKER_NOISES = 12.0  # a pixel that changes by more is a marker's, not the background's
 _VISIBLE_NOISE = 0.5  # a fitted change that alters pixels by less than this is noise fitted to noise
+_FINE_ROUNDS = 2
+_VISIBLE_SHIFT_PX = 0.3
 _MIN_BACKGROUND = 0.5  # share of pixels that must be background for that to make sense
 
 
@@ -28,6 +32,7 @@ class SimilarityLimits:
     """How far a frame may be from the sequence's mean; the last two in multiples of the pixel noise."""
 
     shift_px: float = 0.5
+    trembling_px: float = 4.5
     gain: float = 0.10
     offset_noise: float = 12.0
     rest_noise: float = 2.0
@@ -37,6 +42,7 @@ class SimilarityLimits:
 class Similarity:
     """Per frame: shift (n, 2) [px], gain (n,), offset and rest (n,) [counts]; frames freed of these.
 
+    `unknown_px` is the standard deviation of where the head pointed on average, beyond its own accuracy.
     `problem` says what makes the sequence unusable, empty if nothing does.
     """
 
@@ -45,6 +51,7 @@ class Similarity:
     offset_counts: Array
     rest_counts: Array
     frames: Frames
+    unknown_px: float
     problem: str
 
 
@@ -55,26 +62,58 @@ def compare(
     if stack.ndim != 3 or stack.shape[0] < 2 or min(stack.shape[1:]) < 8:
         raise ValueError(f"stack: got shape {stack.shape}, expected (2 or more, 8 or more, 8 or more)")
     as_finite("noise_counts", [noise_counts], (1,))
+    limits = limits or SimilarityLimits()
     frames = stack.astype(np.float32)
+    still = _equalised(frames, _background(stack, noise_counts), noise_counts, limits)
+    if not still.problem:
+        return still
+    moved = _settled(frames, noise_counts, limits)
+    return still if moved is None or moved.problem else moved
+
+
+def _settled(frames: Frames, noise_counts: float, limits: SimilarityLimits) -> Similarity | None:
+    """The same for frames of a head that trembles by pixels; None if it does by too many, or not at all."""
+    shift = coarse_shifts(frames)
+    found: Similarity | None = None
+    for _ in range(_FINE_ROUNDS):
+        if not _VISIBLE_SHIFT_PX < np.abs(shift).max() <= limits.trembling_px:
+            return None
+        moved = moved_back(frames, shift)
+        inside = shown_by_all(moved.shape[1:], shift)
+        if inside.mean() < _MIN_BACKGROUND / 2:
+            return None
+        background = inside.ravel() & _background(moved, noise_counts)
+        found = _equalised(moved, background, noise_counts, limits, inside)
+        shift = shift + found.shift_px - found.shift_px.mean(axis=0)
+    return None if found is None else replace(found, shift_px=shift, unknown_px=unknown_px(shift))
+
+
+def _equalised(
+    frames: Frames,
+    background: NDArray[np.bool_],
+    noise_counts: float,
+    limits: SimilarityLimits,
+    inside: NDArray[np.bool_] | None = None,
+) -> Similarity:
+    """Frames freed of what moves and lights them otherwise, and whether they show one scene; nothing differs
+    but `inside`."""
     mean = frames.mean(axis=0)
     basis = _basis(mean)
     flat = (frames - mean).reshape(len(frames), -1)
-    coefficients = _fit(basis, flat, _background(stack, noise_counts))
+    coefficients = _fit(basis, flat, background)
     flat -= coefficients @ basis
+    if inside is not None:
+        flat[:, ~inside.ravel()] = 0.0
     limit = np.float32(_MARKER_NOISES * noise_counts)
     rest = np.sqrt(np.mean(np.clip(flat, -limit, limit) ** 2, axis=1)).astype(np.float64)
     fitted = coefficients.astype(np.float64)
     shift, gain, offset = -fitted[:, :2], fitted[:, 2], fitted[:, 3]
     visible = np.abs(fitted) * basis.std(axis=1) > _VISIBLE_NOISE * noise_counts
     problem = _problem(
-        shift * visible[:, :2],
-        gain * visible[:, 2],
-        offset / noise_counts,
-        rest / noise_counts,
-        limits or SimilarityLimits(),
+        shift * visible[:, :2], gain * visible[:, 2], offset / noise_counts, rest / noise_counts, limits
     )
     flat += mean.reshape(1, -1)
-    return Similarity(shift, gain, offset, rest, flat.reshape(frames.shape), problem)
+    return Similarity(shift, gain, offset, rest, flat.reshape(frames.shape), 0.0, problem)
 
 
 def _basis(mean: Frames) -> Frames:
@@ -84,7 +123,7 @@ def _basis(mean: Frames) -> Frames:
     return np.stack([row.ravel() for row in rows])
 
 
-def _background(stack: NDArray[np.uint16], noise_counts: float) -> NDArray[np.bool_]:
+def _background(stack: NDArray[np.uint16] | Frames, noise_counts: float) -> NDArray[np.bool_]:
     """Pixels (h * w,) that no marker lights up; all of them if the whole scene changes."""
     steady: NDArray[np.bool_] = np.ptp(stack, axis=0).ravel() < _MARKER_NOISES * noise_counts
     return steady if steady.mean() > _MIN_BACKGROUND else np.ones_like(steady)
