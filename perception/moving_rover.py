@@ -27,8 +27,9 @@ from perception.rotation import rot_z
 from perception.steadying import Picture
 
 _WORKING_PX = 64.0  # a rover as long as this shows what is needed; nearer ones are binned
-# Rovers have 0.33 and 0.4 or more; where chance has put specks under an outline, one of both is less.
-_LEAST_ALIKE, _LEAST_COVERED = 0.3, 0.3
+# Rovers have 0.43 and 0.54 or more; where chance has put specks under an outline, one of both is less.
+_LEAST_ALIKE, _LEAST_COVERED = 0.4, 0.5
+_SPARSE, _PLAIN = 4, 3.0  # a picture whose contrast is below so many pixel noises shows nothing
 _LARGEST_TURN_RAD = math.radians(5.0)
 _MOST_APART_PX = 1.5  # binned, between what is seen and what a point in space can show
 _LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.12, 0.12  # binned
@@ -79,7 +80,9 @@ def moving_rover(chain: Chain, expectation: Expectation, images: Images, range_m
     """
     check_frames(images, chain.rig.sensor)
     search = _Search.of(chain, expectation, images, range_m)
-    found = _Found(expectation.state.site_body, np.eye(3), (), 0.0) if search.fragments else None
+    if search is None or not search.fragments:
+        return None
+    found: _Found | None = _Found(expectation.state.site_body, np.eye(3), (), 0.0)
     for each in _PASSES:
         found = None if found is None else search.best(found.site_body, each)
     if (
@@ -137,7 +140,7 @@ class _Search:
     fragments: dict[int, Fragments]
 
     @classmethod
-    def of(cls, chain: Chain, expectation: Expectation, images: Images, range_m: float) -> _Search:
+    def of(cls, chain: Chain, expectation: Expectation, images: Images, range_m: float) -> _Search | None:
         rover_px = chain.rig.cameras[0].focal_px * chain.rig.rover.length_m / range_m
         smallest = min(min(w.width, w.height) for w in images.windows)
         binning = max(1, min(round(rover_px / _WORKING_PX), smallest // LEAST_SIDE_PX))
@@ -147,6 +150,8 @@ class _Search:
             moved = motion_fragments(stack[0], stack[-1], noise, corner, rover_px, binning)
             if moved is not None:
                 fragments[camera] = moved
+            elif float(np.std(stack[-1][::_SPARSE, ::_SPARSE])) > _PLAIN * noise:
+                return None  # what moves for one camera moves for the other, unless that is blind
         head_rad = (images.head.pan_rad, images.head.tilt_rad)
         return cls(chain, expectation, head_rad, binning, fragments)
 
