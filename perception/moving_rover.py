@@ -85,11 +85,7 @@ def moving_rover(chain: Chain, expectation: Expectation, images: Images, range_m
     found: _Found | None = _Found(expectation.state.site_body, np.eye(3), (), 0.0)
     for each in _PASSES:
         found = None if found is None else search.best(found.site_body, each)
-    if (
-        found is None
-        or min(lie.alike for lie in found.lies) < _LEAST_ALIKE
-        or found.apart_px > _MOST_APART_PX
-    ):
+    if found is None or not found.credible or not search.on_the_ground(found):
         return None
     step, step_covariance = search.step(found)
     return Moving(
