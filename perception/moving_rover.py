@@ -84,7 +84,7 @@ def moving_rover(chain: Chain, expectation: Expectation, images: Images, range_m
         return None
     found: _Found | None = _Found(expectation.state.site_body, np.eye(3), (), 0.0)
     for each in _PASSES:
-        found = None if found is None else search.best(found.site_body, each)
+        found = None if found is None else search.look(found.site_body, each)
     if found is None or not found.credible or not search.on_the_ground(found):
         return None
     step, step_covariance = search.step(found)
@@ -111,11 +111,6 @@ class _Found:
     def alike(self) -> float:
         """How well the outline fits, of the worse camera."""
         return min(lie.alike for lie in self.lies)
-
-    @property
-    def fit(self) -> float:
-        """How well the outlines fit, of all cameras."""
-        return sum(lie.alike for lie in self.lies)
 
     @property
     def credible(self) -> bool:
@@ -151,21 +146,22 @@ class _Search:
         head_rad = (images.head.pan_rad, images.head.tilt_rad)
         return cls(chain, expectation, head_rad, binning, fragments)
 
-    def best(self, site_body: Transform, each: _Pass) -> _Found | None:
-        """The best of some headings; None where the outlines do not fall into the pictures."""
-        sigma = min(math.sqrt(self.expectation.covariance[5, 5]), _LARGEST_TURN_RAD)
-        turned = [Transform(rot_z(t * sigma) @ site_body.rotation, site_body.position_m) for t in each.turns]
-        found = [f for body in turned if (f := self.look(body, each)) is not None]
-        return max(found, key=lambda f: f.fit, default=None)
-
     def look(self, site_body: Transform, each: _Pass) -> _Found | None:
-        """Lay the outlines near a pose."""
-        halvings = each.halvings
-        outlines = [self._outline(camera, halvings) for camera in self.fragments]
-        pictures = [_halved(f.edges) if halvings > 1 else f.lines for f in self.fragments.values()]
-        lies = lay_outlines(outlines, pictures, site_body, each.reach_px, each.blur_px)
-        if lies is None:
-            return None
+        """Lay the outlines near a pose, at the heading that fits best; None where they do not fall into the
+        pictures, or contradict each other."""
+        outlines = [self._outline(camera, each.halvings) for camera in self.fragments]
+        pictures = [_halved(f.edges) if each.halvings > 1 else f.lines for f in self.fragments.values()]
+        sigma = min(math.sqrt(self.expectation.covariance[5, 5]), _LARGEST_TURN_RAD)
+        best: tuple[Transform, Sequence[Lie]] | None = None
+        for turn in each.turns:
+            body = Transform(rot_z(turn * sigma) @ site_body.rotation, site_body.position_m)
+            lies = lay_outlines(outlines, pictures, body, each.reach_px, each.blur_px)
+            if lies is not None and (best is None or _fit(lies) > _fit(best[1])):
+                best = body, lies
+        return None if best is None else self._placed(outlines, *best)
+
+    def _placed(self, outlines: list[Outline], site_body: Transform, lies: Sequence[Lie]) -> _Found | None:
+        """The pose that outlines, laid from an expected one, amount to; None if there is none."""
         middle = self._middle(site_body)
         uv = np.full((2, 2), np.nan)
         for outline, lie in zip(outlines, lies, strict=True):
@@ -174,14 +170,14 @@ class _Search:
         up = head.rotation.T @ [0.0, 0.0, 1.0]
         height = self._middle(self.expectation.state.site_body)[2] - head.position_m[2]
         sigma_height = self._height_sigma_m() if len(outlines) == 1 else _UNKNOWN_M
-        sigma_px = np.full(2, _LIE_SIGMA_PX * self.binning * halvings)
+        sigma_px = np.full(2, _LIE_SIGMA_PX * outlines[0].binning)
         point, P = coarse_position(self.chain.model, uv, sigma_px, (up, height, sigma_height))
         moved = Transform(site_body.rotation, site_body.position_m + head.apply(point[None])[0] - middle)
         off = self.chain.model.project(point[None])[:, 0] - uv
         off = off[[outline.camera for outline in outlines]]
         if not np.isfinite(off).all():  # lines of sight that part: in front of the cameras they do not meet
             return None
-        apart_px = float(np.abs(off).max()) / (self.binning * halvings)
+        apart_px = float(np.abs(off).max()) / outlines[0].binning
         return _Found(moved, head.rotation @ P @ head.rotation.T, lies, apart_px)
 
     def on_the_ground(self, found: _Found) -> bool:
@@ -228,6 +224,11 @@ class _Search:
         """The middle (3,) of the rover's height."""
         up: Array = site_body.rotation[:, 2]
         return site_body.position_m + up * self.chain.rig.rover.height_m / 2
+
+
+def _fit(lies: Sequence[Lie]) -> float:
+    """How well outlines fit, of all cameras."""
+    return sum(lie.alike for lie in lies)
 
 
 def _halved(edges: Picture) -> Picture:
