@@ -21,7 +21,7 @@ from perception.coarse_position import coarse_position
 from perception.frames import check_frames
 from perception.motion import LEAST_SIDE_PX, Fragments, motion_fragments
 from perception.outline import Outline
-from perception.outline_fit import Lie, lay_outlines, step_between
+from perception.outline_fit import Lie, lay_outlines, step_between, support
 from perception.prediction import Expectation
 from perception.rotation import rot_z
 from perception.steadying import Picture
@@ -29,6 +29,7 @@ from perception.steadying import Picture
 _WORKING_PX = 64.0  # a rover as long as this shows what is needed; nearer ones are binned
 # Rovers have 0.43 and 0.54 or more; where chance has put specks under an outline, one of both is less.
 _LEAST_ALIKE, _LEAST_COVERED = 0.4, 0.5
+_LEAST_EVIDENT = 0.25  # the same of what itself moved; rovers have 0.29 or more up to 10 m
 _SPARSE, _PLAIN = 4, 3.0  # a picture whose contrast is below so many pixel noises shows nothing
 _LARGEST_TURN_RAD = math.radians(5.0)
 _MOST_APART_PX = 1.5  # binned, between what is seen and what a point in space can show
@@ -85,7 +86,7 @@ def moving_rover(chain: Chain, expectation: Expectation, images: Images, range_m
     found: _Found | None = _Found(expectation.state.site_body, np.eye(3), (), 0.0)
     for each in _PASSES:
         found = None if found is None else search.look(found.site_body, each)
-    if found is None or not found.credible or not search.on_the_ground(found):
+    if found is None or not (found.credible and search.evident(found) and search.on_the_ground(found)):
         return None
     step, step_covariance = search.step(found)
     return Moving(
@@ -179,6 +180,12 @@ class _Search:
             return None
         apart_px = float(np.abs(off).max()) / outlines[0].binning
         return _Found(moved, head.rotation @ P @ head.rotation.T, lies, apart_px)
+
+    def evident(self, found: _Found) -> bool:
+        """Whether enough of the outline lies on what itself moved, in each camera."""
+        pairs = zip(self.fragments.values(), found.lies, strict=True)
+        support_each = [support(f.edges, lie.sketch, np.round(lie.off_px)) for f, lie in pairs]
+        return min(min(each) for each in support_each) >= _LEAST_EVIDENT
 
     def on_the_ground(self, found: _Found) -> bool:
         """Whether the height of what was found may be that of the ground there."""
