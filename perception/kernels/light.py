@@ -69,8 +69,8 @@ def add_fit(
     `weights` are the pixels' inverse variances.
     """
     left, top, width, height = patch
-    across, across_slope = profiles(np.arange(width) + (left - u_px), box_px, sigma_px)
-    down, down_slope = profiles(np.arange(height) + (top - v_px), box_px, sigma_px)
+    across, across_slope = profiles(np.arange(width, dtype=np.float64) + (left - u_px), box_px, sigma_px)
+    down, down_slope = profiles(np.arange(height, dtype=np.float64) + (top - v_px), box_px, sigma_px)
     T, gain = np.empty(3), 0.0
     for j in range(height):
         for i in range(width):
