@@ -9,6 +9,7 @@ from perception.camera import StereoModel
 from perception.checks import as_finite
 
 _STEPS = 5
+_CONVERGED_M = 1e-5
 
 
 def coarse_position(
@@ -33,5 +34,8 @@ def coarse_position(
         A, off = J[seen, 0], (uv_px - uv[:, 0])[seen]
         H = np.einsum("cki,c,ckj->ij", A, w, A) + np.outer(normal, normal) / sigma_height**2
         g = np.einsum("cki,c,ck->i", A, w, off) + normal * (offset - normal @ point) / sigma_height**2
-        point = point + np.linalg.solve(H, g)
+        step = np.linalg.solve(H, g)
+        point = point + step
+        if np.abs(step).max() < _CONVERGED_M:
+            break
     return point, np.asarray(np.linalg.inv(H), dtype=np.float64)

@@ -3,7 +3,8 @@
 Coarse search (perception.search), then the most likely pose from each of the best places
 (perception.likelihood). A pose is accepted when its joint SNR exceeds what noise alone shows anywhere in the
 region at the false-alarm rate, when nothing else explains the images as well, and when what the images say
-at each marker agrees with it. Where not all markers shine, LEDs may be mixed up: that is tried too.
+at each marker agrees with it. Where not all markers shine as they should, LEDs may be mixed up: that is
+tried too.
 """
 
 from __future__ import annotations
@@ -33,10 +34,12 @@ __all__ = ["FALSE_ALARM_RATE", "JointFix", "joint_fix", "relative_gain"]
 # and on 1200 regions of white noise 1.0 to 2.7 times as many climbed as high as it says.
 FALSE_ALARM_RATE = 3e-4
 _GATE = 0.9999
+_EVEN_GATE = 0.99  # beyond it the markers are not taken to shine alike
 _FEW_GATE = 0.99  # where two markers must do
 _RIVAL = 6.0  # twice the difference in log likelihood below which another pose explains the images as well
 _LEAST_MARKER_SNR = 2.5  # of one marker in both cameras, to count as shining once the pose is known
 _LEAST_MARKERS = 2
+_AS_EXPECTED = 0.6  # of the joint SNR expected: a pose with less leaves light unexplained, or LEDs are dim
 _GLOW = 0.35  # of the brightest marker's flux: less may be an LED that is dim, or none
 _NOISE_RATE = 0.05  # of noise alone, in the search for what the markers that do not shine at a pose may show
 _SURE = 3.0  # above that, the joint SNR at which markers as bright would hardly stay below it
@@ -60,8 +63,10 @@ def joint_fix(
     readings = Readings.of(chain, sighting_without_centres(chain, expectation, tilt_rad), expectation.surface)
     scene = JointScene(chain, corners_px, spread, expectation, readings, widen, seeing)
     found = _find(scene, images)
-    if isinstance(found, Rejection) or found.bright.all():
-        return found if isinstance(found, Rejection) else _gated(scene, found)
+    if isinstance(found, Rejection):
+        return found
+    if found.bright.all() and found.best.snr > _AS_EXPECTED * scene.expected_snr(images):
+        return _gated(scene, found)
     swapped, said = _exchanged(scene, images, found)
     if swapped is not None:
         return noted(_gated(scene, swapped), said)
@@ -113,10 +118,11 @@ def _exchanged(scene: JointScene, images: Sequence[Difference], found: _Found) -
     """A pose at which all markers shine once one or two couples of LEDs are exchanged, if that explains the
     images better, and which couples these are."""
     better: tuple[_Found | None, str] = None, ""
+    sure = found.bright & ~found.bright.all()
     least = found.best.snr**2 + _RIVAL
     for order, said in exchanges(len(found.bright)):
         moved = [(m, at) for m, at in enumerate(order) if m != at]
-        if any(found.bright[m] and found.bright[at] for m, at in moved):
+        if any(sure[m] and sure[at] for m, at in moved):
             continue
         other = _find(scene, [replace(i, images=i.images[order], sigma=i.sigma[order]) for i in images])
         if isinstance(other, _Found) and other.bright.all() and other.best.snr**2 > least:
@@ -165,7 +171,7 @@ def _with_own_fluxes(
     pull = best.local.score[..., 0] * evidence.gain
     total = np.maximum(information.sum(axis=0), 1e-30)
     change, sigma = pull.sum(axis=0) / total, 1 / np.sqrt(total)
-    if float(((change / sigma) ** 2).sum()) <= chi2_limit(len(change) - 1, _GATE):
+    if float(((change / sigma) ** 2).sum()) <= chi2_limit(len(change) - 1, _EVEN_GATE):
         return best, True
     own = best.flux_counts + change
     own = np.where(own > _LEAST_MARKER_SNR * sigma, own, 0.0)
@@ -191,6 +197,8 @@ def _gated(scene: JointScene, found: _Found) -> JointFix | Rejection:
         return Rejection(f"no best pose after {best.steps} steps", seen)
     if fix.chi2 > chi2_limit(fix.dof, gate):
         return Rejection(f"the images pull the markers apart: chi-square {fix.chi2:.0f} of {fix.dof}", seen)
+    if uneven := _unevenness(found):
+        return Rejection(uneven, seen)
     if found.lead < _RIVAL:
         return Rejection(f"two poses explain the images, {found.lead:.1f} apart in log likelihood", seen)
     if not faces_cameras(scene.chain, fix):
@@ -206,6 +214,18 @@ def _settled(chain: Chain, found: JointFix, state: ChainState, covariance: Array
     residual = np.where(np.isfinite(found.detected_px), found.detected_px - uv, np.nan)
     fix = replace(found.fix, state=state, covariance=covariance, reprojected_px=uv, residual_px=residual)
     return replace(found, fix=fix)
+
+
+def _unevenness(found: _Found) -> str:
+    """Why the light does not come from markers that both cameras see; empty if it does."""
+    best, alive = found.best, found.best.flux_counts > 0
+    information, score = best.local.information[:, alive, 0, 0], best.local.score[:, alive, 0]
+    seen = information > 0
+    chi2 = float((score[seen] ** 2 / information[seen]).sum())
+    dof = int(seen.sum()) - (1 if found.shared else found.shining)
+    if chi2 <= chi2_limit(dof, _GATE):
+        return ""
+    return f"the markers do not shine alike in both cameras: chi-square {chi2:.0f} of {dof}"
 
 
 def _as_fix(scene: JointScene, best: Likely, alive: NDArray[np.bool_]) -> tuple[Fix, Array]:

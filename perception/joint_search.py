@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,7 +12,7 @@ from executive.types import Array, Vec2
 from perception.chain import Chain, ChainState
 from perception.chance_finds import joint_threshold
 from perception.difference import Difference
-from perception.exposure import emission
+from perception.exposure import emission, flux_expected, view_of
 from perception.likelihood import Evidence, Likely, most_likely
 from perception.markers import filter_snr
 from perception.pose import Readings, Sighting
@@ -64,6 +65,12 @@ class JointScene:
     def threshold(self, volume: float, rate: float) -> float:
         state = self.expectation.state
         return joint_threshold(self.chain, state, self.readings, self.spread, volume, rate, self.seeing)
+
+    def expected_snr(self, images: Sequence[Difference]) -> float:
+        """Joint SNR of all markers at their nominal power, seen as expected."""
+        flux = flux_expected(self.chain.rig, view_of(self.chain, self.expectation.state))
+        seen = len(self.seeing) * len(self.chain.markers_plc_m)
+        return flux / _flux_unit(images, self.spread) * math.sqrt(seen)
 
 
 def relative_gain(chain: Chain, state: ChainState) -> Array:

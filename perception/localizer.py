@@ -222,7 +222,7 @@ def _doubtful(outcome: Outcome[PoseEstimate], predicted: PoseEstimate) -> bool:
 
 def _cost(sight: Sight) -> str:
     took_s = sight.frames * sight.data.shot.cadence_s
-    note = f"; {sight.answer.note}" if isinstance(sight.answer, JointFix) else ""
+    note = "" if isinstance(sight.answer, Rejection) or not sight.answer.note else f"; {sight.answer.note}"
     return f"{sight.pairs} pairs, {sight.frames} frames in {took_s:.0f} s{note}"
 
 

@@ -27,13 +27,15 @@ class Look:
     """Candidates [camera][marker], the dark images, and what makes the frames unusable (or empty).
 
     A camera that shows nothing usable has no candidates at all, `[]`, and `note` says why; if neither does,
-    that is the `problem`.
+    that is the `problem`. `unknown_px` is for `perception.trembling.shaken`: how little is known of where the
+    head pointed while it trembled.
     """
 
     candidates: Candidates
     reference: tuple[NDArray[np.float32], NDArray[np.float32]] | None
     problem: str = ""
     note: str = ""
+    unknown_px: tuple[float, ...] = ()
 
     @property
     def strongest_px(self) -> Array:
@@ -63,16 +65,18 @@ def look_at(rig: RigCalibration, data: Images | Centres, range_m: float) -> Look
         [] if why and not blind else camera.candidates for camera, why in zip(cameras, problems, strict=True)
     ]
     reference = cameras[0].reference, cameras[1].reference
-    return Look(candidates, reference, said if blind else "", "" if blind else said)
+    unknown = tuple(camera.unknown_px for camera in cameras)
+    return Look(candidates, reference, said if blind else "", "" if blind else said, unknown)
 
 
 @dataclass(frozen=True, eq=False)
 class _Seen:
-    """One camera's candidates by marker, dark image, and problem."""
+    """One camera's candidates by marker, dark image, problem, and how little the pointing is known [px]."""
 
     candidates: list[list[Detection]]
     reference: NDArray[np.float32]
     problem: str
+    unknown_px: float = 0.0
 
 
 def _detect(rig: RigCalibration, images: Images, camera: int, range_m: float) -> _Seen:
@@ -95,7 +99,8 @@ def _detect(rig: RigCalibration, images: Images, camera: int, range_m: float) ->
         find_markers(image, sigma, spread, (window.u, window.v), FALSE_ALARM_RATE) if 1 << m in leds else []
         for m, (image, sigma) in enumerate(zip(found.images, found.sigma, strict=True))
     ]
-    return _Seen(candidates, found.reference, saturation(counts, sensor) or similarity.problem)
+    problem = saturation(counts, sensor) or similarity.problem
+    return _Seen(candidates, found.reference, problem, similarity.unknown_px)
 
 
 def _given(centres: Centres) -> list[list[list[Detection]]]:

@@ -21,14 +21,16 @@ from perception.coarse_position import coarse_position
 from perception.frames import check_frames
 from perception.motion import LEAST_SIDE_PX, Fragments, motion_fragments
 from perception.outline import Outline
-from perception.outline_fit import Lie, lay_outlines, step_between
+from perception.outline_fit import Lie, lay_outlines, step_between, support
 from perception.prediction import Expectation
 from perception.rotation import rot_z
 from perception.steadying import Picture
 
 _WORKING_PX = 64.0  # a rover as long as this shows what is needed; nearer ones are binned
-# Rovers have 0.33 and 0.4 or more; where chance has put specks under an outline, one of both is less.
-_LEAST_ALIKE, _LEAST_COVERED = 0.3, 0.3
+# Rovers have 0.43 and 0.54 or more; where chance has put specks under an outline, one of both is less.
+_LEAST_ALIKE, _LEAST_COVERED = 0.4, 0.5
+_LEAST_EVIDENT = 0.25  # the same of what itself moved; rovers have 0.29 or more up to 10 m
+_SPARSE, _PLAIN = 4, 3.0  # a picture whose contrast is below so many pixel noises shows nothing
 _LARGEST_TURN_RAD = math.radians(5.0)
 _MOST_APART_PX = 1.5  # binned, between what is seen and what a point in space can show
 _LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.12, 0.12  # binned
@@ -79,14 +81,12 @@ def moving_rover(chain: Chain, expectation: Expectation, images: Images, range_m
     """
     check_frames(images, chain.rig.sensor)
     search = _Search.of(chain, expectation, images, range_m)
-    found = _Found(expectation.state.site_body, np.eye(3), (), 0.0) if search.fragments else None
+    if search is None or not search.fragments:
+        return None
+    found: _Found | None = _Found(expectation.state.site_body, np.eye(3), (), 0.0)
     for each in _PASSES:
-        found = None if found is None else search.best(found.site_body, each)
-    if (
-        found is None
-        or min(lie.alike for lie in found.lies) < _LEAST_ALIKE
-        or found.apart_px > _MOST_APART_PX
-    ):
+        found = None if found is None else search.look(found.site_body, each)
+    if found is None or not (found.credible and search.evident(found) and search.on_the_ground(found)):
         return None
     step, step_covariance = search.step(found)
     return Moving(
@@ -114,11 +114,6 @@ class _Found:
         return min(lie.alike for lie in self.lies)
 
     @property
-    def fit(self) -> float:
-        """How well the outlines fit, of all cameras."""
-        return sum(lie.alike for lie in self.lies)
-
-    @property
     def credible(self) -> bool:
         """Whether enough of the outline is there, in each camera and at one place in space."""
         covered = min(lie.covered for lie in self.lies)
@@ -137,7 +132,7 @@ class _Search:
     fragments: dict[int, Fragments]
 
     @classmethod
-    def of(cls, chain: Chain, expectation: Expectation, images: Images, range_m: float) -> _Search:
+    def of(cls, chain: Chain, expectation: Expectation, images: Images, range_m: float) -> _Search | None:
         rover_px = chain.rig.cameras[0].focal_px * chain.rig.rover.length_m / range_m
         smallest = min(min(w.width, w.height) for w in images.windows)
         binning = max(1, min(round(rover_px / _WORKING_PX), smallest // LEAST_SIDE_PX))
@@ -147,24 +142,27 @@ class _Search:
             moved = motion_fragments(stack[0], stack[-1], noise, corner, rover_px, binning)
             if moved is not None:
                 fragments[camera] = moved
+            elif float(np.std(stack[-1][::_SPARSE, ::_SPARSE])) > _PLAIN * noise:
+                return None  # what moves for one camera moves for the other, unless that is blind
         head_rad = (images.head.pan_rad, images.head.tilt_rad)
         return cls(chain, expectation, head_rad, binning, fragments)
 
-    def best(self, site_body: Transform, each: _Pass) -> _Found | None:
-        """The best of some headings; None where the outlines do not fall into the pictures."""
-        sigma = min(math.sqrt(self.expectation.covariance[5, 5]), _LARGEST_TURN_RAD)
-        turned = [Transform(rot_z(t * sigma) @ site_body.rotation, site_body.position_m) for t in each.turns]
-        found = [f for body in turned if (f := self.look(body, each)) is not None]
-        return max(found, key=lambda f: f.fit, default=None)
-
     def look(self, site_body: Transform, each: _Pass) -> _Found | None:
-        """Lay the outlines near a pose."""
-        halvings = each.halvings
-        outlines = [self._outline(camera, halvings) for camera in self.fragments]
-        pictures = [_halved(f.edges) if halvings > 1 else f.lines for f in self.fragments.values()]
-        lies = lay_outlines(outlines, pictures, site_body, each.reach_px, each.blur_px)
-        if lies is None:
-            return None
+        """Lay the outlines near a pose, at the heading that fits best; None where they do not fall into the
+        pictures, or contradict each other."""
+        outlines = [self._outline(camera, each.halvings) for camera in self.fragments]
+        pictures = [_halved(f.edges) if each.halvings > 1 else f.lines for f in self.fragments.values()]
+        sigma = min(math.sqrt(self.expectation.covariance[5, 5]), _LARGEST_TURN_RAD)
+        best: tuple[Transform, Sequence[Lie]] | None = None
+        for turn in each.turns:
+            body = Transform(rot_z(turn * sigma) @ site_body.rotation, site_body.position_m)
+            lies = lay_outlines(outlines, pictures, body, each.reach_px, each.blur_px)
+            if lies is not None and (best is None or _fit(lies) > _fit(best[1])):
+                best = body, lies
+        return None if best is None else self._placed(outlines, *best)
+
+    def _placed(self, outlines: list[Outline], site_body: Transform, lies: Sequence[Lie]) -> _Found | None:
+        """The pose that outlines, laid from an expected one, amount to; None if there is none."""
         middle = self._middle(site_body)
         uv = np.full((2, 2), np.nan)
         for outline, lie in zip(outlines, lies, strict=True):
@@ -173,15 +171,21 @@ class _Search:
         up = head.rotation.T @ [0.0, 0.0, 1.0]
         height = self._middle(self.expectation.state.site_body)[2] - head.position_m[2]
         sigma_height = self._height_sigma_m() if len(outlines) == 1 else _UNKNOWN_M
-        sigma_px = np.full(2, _LIE_SIGMA_PX * self.binning * halvings)
+        sigma_px = np.full(2, _LIE_SIGMA_PX * outlines[0].binning)
         point, P = coarse_position(self.chain.model, uv, sigma_px, (up, height, sigma_height))
         moved = Transform(site_body.rotation, site_body.position_m + head.apply(point[None])[0] - middle)
         off = self.chain.model.project(point[None])[:, 0] - uv
         off = off[[outline.camera for outline in outlines]]
         if not np.isfinite(off).all():  # lines of sight that part: in front of the cameras they do not meet
             return None
-        apart_px = float(np.abs(off).max()) / (self.binning * halvings)
+        apart_px = float(np.abs(off).max()) / outlines[0].binning
         return _Found(moved, head.rotation @ P @ head.rotation.T, lies, apart_px)
+
+    def evident(self, found: _Found) -> bool:
+        """Whether enough of the outline lies on what itself moved, in each camera."""
+        pairs = zip(self.fragments.values(), found.lies, strict=True)
+        support_each = [support(f.edges, lie.sketch, np.round(lie.off_px)) for f, lie in pairs]
+        return min(min(each) for each in support_each) >= _LEAST_EVIDENT
 
     def on_the_ground(self, found: _Found) -> bool:
         """Whether the height of what was found may be that of the ground there."""
@@ -227,6 +231,11 @@ class _Search:
         """The middle (3,) of the rover's height."""
         up: Array = site_body.rotation[:, 2]
         return site_body.position_m + up * self.chain.rig.rover.height_m / 2
+
+
+def _fit(lies: Sequence[Lie]) -> float:
+    """How well outlines fit, of all cameras."""
+    return sum(lie.alike for lie in lies)
 
 
 def _halved(edges: Picture) -> Picture:

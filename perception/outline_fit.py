@@ -58,7 +58,7 @@ def lay_outlines(
         band = score[top : row + _ROW_SLACK + 1]
         j, i = (int(x) for x in np.unravel_index(int(band.argmax()), band.shape))
         off = np.array([i, top + j]) - reach_px
-        lies.append(Lie(off + _between(score, i, top + j), *_support(edge, sketch, off), sketch))
+        lies.append(Lie(off + _between(score, i, top + j), *support(edge, sketch, off), sketch))
     return lies
 
 
@@ -116,7 +116,7 @@ def _cut(edge: NDArray[Any], sketch: Sketch, reach_px: int) -> NDArray[Any] | No
     return np.asarray(cv2.copyMakeBorder(inside, *pad, cv2.BORDER_CONSTANT, value=0), dtype=edge.dtype)
 
 
-def _support(edge: Picture, sketch: Sketch, off: Array) -> tuple[float, float]:
+def support(edge: Picture, sketch: Sketch, off: Array) -> tuple[float, float]:
     """Correlation of the lines with the edges that they lie on, and the share of them that lies on any."""
     under = _cut(edge, replace(sketch, corner=sketch.corner + off), 0)
     if under is None or not under.any():

@@ -17,6 +17,7 @@ from perception.mean_centres import MeanCentres, fix_from_centres
 from perception.prediction import Expectation
 from perception.psf import marker_spread
 from perception.stacking import Stack
+from perception.trembling import shaken
 
 
 class Pile:
@@ -78,7 +79,8 @@ class Pile:
         range_m = view_of(self._chain, expectation.state).range_m
         spread = marker_spread(self._chain.rig, range_m)
         corners = [(w.u, w.v) for w in self._windows]
-        answer = joint_fix(self._chain, differences, corners, spread, expectation, tilt_rad, widen)
+        chain = shaken(self._chain, [stack.unknown_px for stack in self._stacks])
+        answer = joint_fix(chain, differences, corners, spread, expectation, tilt_rad, widen)
         return noted(answer, _said(problems))
 
 

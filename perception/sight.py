@@ -16,6 +16,7 @@ from executive.ports import Devices, LocaliseRequest
 from executive.rig import RigCalibration
 from executive.types import Array, Centres, Images, Outcome, Quality, Shot, Window
 from perception.chain import Chain
+from perception.choice import noted
 from perception.codes import coded_sequence
 from perception.difference import led_sequence
 from perception.effort import joint_pairs, more_pairs, seen_singly, wanted_by
@@ -30,6 +31,7 @@ from perception.prediction import Expectation
 from perception.psf import marker_spread
 from perception.roi import full_windows, predicted_windows
 from perception.routine import Steps, wait_for
+from perception.trembling import shaken
 
 SINGLE_MOST_PAIRS = {Quality.PRECISE: 64, Quality.FAR: 400}
 _PIXEL_BUDGET = 32_000_000  # per camera and shot: frames x window, for memory and time
@@ -125,8 +127,10 @@ class Eyes:
         found = look_at(self._rig, data, view_of(self._chain, state).range_m)
         tilt = self._devices.inclinometer.read()
         attitude = (tilt.roll_rad, tilt.pitch_rad)
-        answer = choose(
-            self._chain, found.candidates, state.head_rad, state.joints_rad, attitude, expectation.prior
+        chain = shaken(self._chain, found.unknown_px)
+        answer = noted(
+            choose(chain, found.candidates, state.head_rad, state.joints_rad, attitude, expectation.prior),
+            found.note,
         )
         centres = answer.detected_px if isinstance(answer, Choice) else found.strongest_px
         return Sight(data, pairs, len(shot.leds), found.reference, centres, found.problem, answer)

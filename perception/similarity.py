@@ -3,22 +3,26 @@
 A frame that shows the same scene under slightly other light, from a head that quivers a little, is
     frame = mean - du * mean_u - dv * mean_v + gain * (mean - average) + offset + noise.
 The fit is taken out of the frame (it would leak background texture into the difference image) as long as
-it is small; a large one, or a large rest, means that the sequence does not show one scene.
+it is small; a large one, or a large rest, means that the sequence does not show one scene. A head that
+trembles by pixels is no such case: its frames are brought onto one another first (perception.trembling).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from executive.types import Array
 from perception.checks import as_finite
-from perception.kernels.frames import Frames, equalised, mean_and_range
+from perception.kernels.frames import Counts, Frames, equalised, mean_and_range
+from perception.trembling import coarse_shifts, moved_back, shown_by_all, unknown_px
 
 _MARKER_NOISES = 12.0  # a pixel that changes by more is a marker's, not the background's
 _VISIBLE_NOISE = 0.5  # a fitted change that alters pixels by less than this is noise fitted to noise
+_FINE_ROUNDS = 2
+_VISIBLE_SHIFT_PX = 0.3
 _MIN_BACKGROUND = 0.5  # share of pixels that must be background for that to make sense
 
 
@@ -27,6 +31,7 @@ class SimilarityLimits:
     """How far a frame may be from the sequence's mean; the last two in multiples of the pixel noise."""
 
     shift_px: float = 0.5
+    trembling_px: float = 4.5
     gain: float = 0.10
     offset_noise: float = 12.0
     rest_noise: float = 2.0
@@ -36,6 +41,7 @@ class SimilarityLimits:
 class Similarity:
     """Per frame: shift (n, 2) [px], gain (n,), offset and rest (n,) [counts]; frames freed of these.
 
+    `unknown_px` is the standard deviation of where the head pointed on average, beyond its own accuracy.
     `problem` says what makes the sequence unusable, empty if nothing does.
     """
 
@@ -44,6 +50,7 @@ class Similarity:
     offset_counts: Array
     rest_counts: Array
     frames: Frames
+    unknown_px: float
     problem: str
 
 
@@ -54,23 +61,55 @@ def compare(
     if stack.ndim != 3 or stack.shape[0] < 2 or min(stack.shape[1:]) < 8:
         raise ValueError(f"stack: got shape {stack.shape}, expected (2 or more, 8 or more, 8 or more)")
     as_finite("noise_counts", [noise_counts], (1,))
-    stack = np.array(stack, dtype=np.uint16, order="C")
-    mean, varies = mean_and_range(stack)
+    limits = limits or SimilarityLimits()
+    counts = np.array(stack, dtype=np.uint16, order="C")
+    mean, varies = mean_and_range(counts)
+    still = _equalised(counts, mean, _background(varies, noise_counts), noise_counts, limits)
+    if not still.problem:
+        return still
+    moved = _settled(counts.astype(np.float32), noise_counts, limits)
+    return still if moved is None or moved.problem else moved
+
+
+def _settled(frames: Frames, noise_counts: float, limits: SimilarityLimits) -> Similarity | None:
+    """The same for frames of a head that trembles by pixels; None if it does by too many, or not at all."""
+    shift = coarse_shifts(frames)
+    found: Similarity | None = None
+    for _ in range(_FINE_ROUNDS):
+        if not _VISIBLE_SHIFT_PX < np.abs(shift).max() <= limits.trembling_px:
+            return None
+        moved = moved_back(frames, shift)
+        inside = shown_by_all(moved.shape[1:], shift)
+        if inside.mean() < _MIN_BACKGROUND / 2:
+            return None
+        mean = moved.mean(axis=0)
+        moved = np.where(inside, moved, mean)
+        background = inside & _background(np.ptp(moved, axis=0), noise_counts)
+        found = _equalised(moved, mean, background, noise_counts, limits)
+        found.frames[:, ~inside] = mean[~inside]
+        shift = shift + found.shift_px - found.shift_px.mean(axis=0)
+    return None if found is None else replace(found, shift_px=shift, unknown_px=unknown_px(shift))
+
+
+def _equalised(
+    stack: Counts | Frames,
+    mean: Frames,
+    background: NDArray[np.bool_],
+    noise_counts: float,
+    limits: SimilarityLimits,
+) -> Similarity:
+    """Frames freed of what moves and lights them otherwise, and whether they show one scene."""
     basis = _basis(mean)
-    weighted = basis * _background(varies, noise_counts)
+    weighted = basis * background
     limit = _MARKER_NOISES * noise_counts
     found, left, frames = equalised(stack, mean, basis, weighted, _inverse(weighted, basis), limit)
     fitted, rest = found.astype(np.float64), left.astype(np.float64)
     shift, gain, offset = -fitted[:, :2], fitted[:, 2], fitted[:, 3]
     visible = np.abs(fitted) * basis.std(axis=(1, 2)) > _VISIBLE_NOISE * noise_counts
     problem = _problem(
-        shift * visible[:, :2],
-        gain * visible[:, 2],
-        offset / noise_counts,
-        rest / noise_counts,
-        limits or SimilarityLimits(),
+        shift * visible[:, :2], gain * visible[:, 2], offset / noise_counts, rest / noise_counts, limits
     )
-    return Similarity(shift, gain, offset, rest, frames, problem)
+    return Similarity(shift, gain, offset, rest, frames, 0.0, problem)
 
 
 def _basis(mean: Frames) -> Frames:
@@ -79,7 +118,7 @@ def _basis(mean: Frames) -> Frames:
     return np.stack([along_u, along_v, mean - mean.mean(), np.ones_like(mean)])
 
 
-def _background(varies: NDArray[np.uint16], noise_counts: float) -> NDArray[np.bool_]:
+def _background(varies: Counts | Frames, noise_counts: float) -> NDArray[np.bool_]:
     """Pixels (h, w) that no marker lights up; all of them if the whole scene changes."""
     steady: NDArray[np.bool_] = varies < _MARKER_NOISES * noise_counts
     return steady if steady.mean() > _MIN_BACKGROUND else np.ones_like(steady)

@@ -39,6 +39,7 @@ class Stack:
         self._rest = 0.0
         self._frames = self._free = 0
         self._on = np.zeros(markers)
+        self._unknown_px2 = 0.0
         self.problem = ""
 
     def add(self, counts: NDArray[np.uint16], leds: tuple[int, ...]) -> None:
@@ -74,12 +75,18 @@ class Stack:
         self._rest += float((similar.rest_counts**2).sum())
         self._frames += len(leds)
         self._free += len(leds) - 1
+        self._unknown_px2 += (similar.unknown_px * len(leds)) ** 2
         self._on += on.sum(axis=0)
 
     @property
     def pairs(self) -> int:
         """On/off pairs taken in so far, of the LED that has the fewest."""
         return int(min(self._on.min(), (self._frames - self._on).min()))
+
+    @property
+    def unknown_px(self) -> float:
+        """How little is known of where a head that trembled pointed on average (perception.trembling)."""
+        return math.sqrt(self._unknown_px2) / max(self._frames, 1)
 
     @property
     def reference(self) -> NDArray[np.float32]:

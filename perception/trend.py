@@ -17,6 +17,7 @@ from perception.prediction import Expectation
 CADENCE_S = 20.0  # at track speed, some 28 mm: a tenth of the rover
 LEDS = (0, 0)
 _HEIGHT_SIGMA_M = 0.03
+_UNKNOWN_M = 10.0
 _WINDOW_ROVERS = 1.0  # window margin around the prediction, in rover lengths
 
 
@@ -59,18 +60,21 @@ def _seen(chain: Chain, expectation: Expectation, data: Images | Centres) -> tup
 
 
 def _from_middles(chain: Chain, expectation: Expectation, data: Centres) -> tuple[Array, Array] | None:
-    """The same from the middles that the geometric tier gives."""
+    """The same from the middles that the geometric tier gives; the ground's height helps one camera alone."""
     uv = data.uv_px[:, 0]
-    if not np.isfinite(uv).all(axis=1).any():
+    seen = np.isfinite(uv).all(axis=1)
+    if not seen.any():
         return None
     head = chain.site_ih((data.head.pan_rad, data.head.tilt_rad))
-    middle = chain.rig.rover.height_m / 2
+    body = expectation.state.site_body
+    to_middle = body.rotation[:, 2] * chain.rig.rover.height_m / 2
     up = head.rotation.T @ [0.0, 0.0, 1.0]
-    height = expectation.state.site_body.position_m[2] + middle - head.position_m[2]
+    height = float((body.position_m + to_middle - head.position_m)[2])
     sigma_height = math.hypot(math.sqrt(expectation.covariance[2, 2]), _HEIGHT_SIGMA_M)
     sigma_px = np.nan_to_num(data.sigma_px[:, 0], nan=1.0)
-    point, P = coarse_position(chain.model, uv, sigma_px, (up, height, sigma_height))
+    point, P = coarse_position(
+        chain.model, uv, sigma_px, (up, height, _UNKNOWN_M if seen.all() else sigma_height)
+    )
     range_m = float(np.linalg.norm(point))
-    P_site = head.rotation @ P @ head.rotation.T
-    P_site += np.eye(3) * (range_m * float(chain.encoder_sigma_rad()[:2].max())) ** 2
-    return head.apply(point[None])[0] - [0.0, 0.0, middle], P_site
+    head_share = np.eye(3) * (range_m * float(chain.encoder_sigma_rad()[:2].max())) ** 2
+    return head.apply(point[None])[0] - to_middle, head.rotation @ P @ head.rotation.T + head_share

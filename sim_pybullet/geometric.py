@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from executive.rig import RigCalibration
 from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Landmarks, Shot, Window
 from sim_pybullet.error_model import JOINT_EXCESS, CentreError, centre_error, joint_chance
 from sim_pybullet.exposing import full_windows
@@ -17,8 +18,9 @@ from sim_pybullet.radiometry import Exposure, spread_reach_px
 from sim_pybullet.raycast import HeightField
 from sim_pybullet.scene import SceneState
 
-CENTROID_SIGMA_PX = 15.0  # motion fragments: where the middle of a moving rover seems to be
 OUTLINE_FRAMES = 3
+_OUTLINE_SIGMA, _OUTLINE_PX = 0.15, 64.0
+"""How well the outline of a moving rover lies, in pixels that show it so many long or longer."""
 LIGHT_CHANGE, SHIFT_PX = 0.05, 0.5
 """How far a frame may be from the mean of its shot; beyond, the detector refuses the images."""
 LEAST_LIGHT = 0.05
@@ -31,7 +33,7 @@ class CentreDeveloper:
 
     A marker that is hidden, dead, outside the window or not found by chance is NaN; in a coded shot chance
     finds all or none. A shot in which no LED is lit is one for motion fragments: it answers with the rover's
-    projected middle, the mean over its frames, in `uv_px[:, 0]`, good to `CENTROID_SIGMA_PX`, and NaN
+    projected middle, the mean over its frames, in `uv_px[:, 0]`, as good as `middle_sigma_px` says, and NaN
     elsewhere. A single such frame is a picture: it shows the `ground`. Three and more show the `outline`.
     """
 
@@ -145,12 +147,20 @@ class CentreDeveloper:
             T = scene.T_site_body
             seen.append(view.project(T[:3, :3] @ _ROVER_MIDDLE_BODY_M + T[:3, 3])[0])
         middle = np.mean(seen, axis=0)
-        noise = CENTROID_SIGMA_PX * self._rng.standard_normal(2)
+        away = scenes[-1].T_site_body[:3, 3] - view.position_site_m
+        sigma_px = middle_sigma_px(self._rig, float(np.linalg.norm(away)))
+        noise = sigma_px * self._rng.standard_normal(2)
         inside = (
             window.u <= middle[0] < window.u + window.width
             and window.v <= middle[1] < window.v + window.height
         )
-        return {0: (middle + noise, CENTROID_SIGMA_PX)} if inside else {}
+        return {0: (middle + noise, sigma_px)} if inside else {}
+
+
+def middle_sigma_px(rig: RigCalibration, range_m: float) -> float:
+    """Standard deviation of a moving rover's middle, as measured in the full tier (benchmarks/motion.py)."""
+    length_px = rig.cameras[0].focal_px * rig.rover.length_m / range_m
+    return _OUTLINE_SIGMA * max(1.0, length_px / _OUTLINE_PX)
 
 
 def _error(shot: Shot, index: int, spot: Spot, exposure: Exposure, coded: bool) -> CentreError:

@@ -35,7 +35,7 @@ def mean_and_range(stack: Counts) -> tuple[Frames, Counts]:
 
 @compiled
 def equalised(
-    stack: Counts, mean: Frames, basis: Frames, weighted: Frames, inverse: Frames, limit: float
+    stack: Counts | Frames, mean: Frames, basis: Frames, weighted: Frames, inverse: Frames, limit: float
 ) -> tuple[Frames, Frames, Frames]:
     """Coefficients (n, 4) of the basis (4, h, w) in each frame's difference from the mean, the rest (n,), in
     which `limit` is the most a pixel counts, and the frames (n, h, w) freed of them.

@@ -286,9 +286,9 @@ class SwappedCameras(Disturbance):
 
 # -- what is right to say
 
-FAINT = r"joint SNR|markers? seen|markers of \d|of \d markers shine|explains .* markers seen"
+FAINT = r"joint SNR|markers? seen|of \d markers shine|explains .* markers seen|two poses explain"
 UNLIKE = r"unexplained difference|brightness change|change of contrast|px of shift|pull the markers apart"
-IMPLAUSIBLE = r"no pose explains|two poses explain|pull the markers apart|from the prediction"
+IMPLAUSIBLE = r"no pose explains|not shine alike|two poses explain|pull the markers|from the prediction"
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,7 @@ from perception.prediction import Expectation, expect
 from perception.psf import marker_spread
 from perception.roi import predicted_windows
 from perception.rotation import log_map, quat_from_matrix, rot_x, rot_y, rot_z
+from perception.trembling import shaken
 from tests.perception.synthetic import GAIN_E, Scene, noise_counts, observed
 from tests.perception.trial_camera import Disturbance, Nuisance, Stage, TrialCamera, flux_e
 
@@ -183,6 +184,7 @@ def _singly(setting, cameras, stage, rng):
     if look.problem:
         return Rejection(look.problem, 0), watch.elapsed_s()
     prior = setting.expectation.prior
+    chain = shaken(chain, look.unknown_px)
     found = choose(chain, look.candidates, said.head_rad, said.joints_rad, setting.tilt_rad, prior)
     return noted(found, look.note), watch.elapsed_s()
 

@@ -68,10 +68,19 @@ def test_a_strong_marker_does_not_pass_for_a_change_of_light():
 
 def test_a_jolted_frame_is_told_and_found():
     _, stack = images(np.random.default_rng(5))
-    stack[7] = np.roll(stack[7], 2, axis=1)
+    stack[7] = np.roll(stack[7], 8, axis=1)
     found = compare(stack, noise_counts())
     assert found.problem
     assert int(found.rest_counts.argmax()) == 7
+
+
+def test_a_frame_off_by_pixels_is_brought_back():
+    _, stack = images(np.random.default_rng(5))
+    stack[7] = np.roll(stack[7], 2, axis=1)
+    found = compare(stack, noise_counts())
+    assert found.problem == ""
+    assert found.shift_px[7, 0] - found.shift_px[6, 0] == pytest.approx(2.0, abs=0.1)
+    assert found.unknown_px > 0
 
 
 def test_a_small_quiver_is_taken_out():

@@ -273,10 +273,9 @@ def test_trend_from_centroids_is_coarse_and_honest():
         middle = r.state.site_body.position_m + r.state.site_body.rotation @ [0.0, 0.0, 0.065]
         head = r.chain.site_ih(r.state.head_rad)
         uv = np.full((2, 4, 2), np.nan)
-        uv[:, 0] = r.chain.model.project(head.inverse().apply(middle[None]))[:, 0] + 15 * rng.standard_normal(
-            (2, 2)
-        )
-        data = Centres(r.clock.now_s, shot, uv, np.full((2, 4), 15.0), r.head_reading())
+        true_px = r.chain.model.project(head.inverse().apply(middle[None]))[:, 0]
+        uv[:, 0] = true_px + 2 * rng.standard_normal((2, 2))
+        data = Centres(r.clock.now_s, shot, uv, np.full((2, 4), 2.0), r.head_reading())
         return After(r.clock, r.clock.now_s + 20, Outcome(Reason.DONE, value=data))
 
     r.take = centroid
@@ -285,7 +284,7 @@ def test_trend_from_centroids_is_coarse_and_honest():
         assert outcome.value.source is Source.TREND
         off = (np.array(outcome.value.position_site_m) - r.state.site_body.position_m)[:2]
         values.append(off @ np.linalg.solve(outcome.value.covariance[:2, :2], off))
-        assert 0.01 < outcome.value.sigma_position_m < 0.15
+        assert 0.003 < outcome.value.sigma_position_m < 0.05
         assert outcome.value.time_s == r.clock.now_s - 10.0
     assert np.mean(values) < 3.0
 

@@ -64,6 +64,13 @@ def test_one_camera_alone_still_finds_it_with_what_is_known_of_the_ground(at_fiv
     assert error @ np.linalg.solve(found.covariance, error) < 16.0
 
 
+def test_what_only_one_of_two_seeing_cameras_sees_move_is_not_believed(at_five_metres):
+    s = at_five_metres
+    left, right = s.data.counts
+    still = np.stack([left[1], left[1]])
+    assert find(replace(s, data=replace(s.data, counts=(still, right)))) is None
+
+
 def test_a_rover_at_rest_is_not_found():
     assert all(find(look(5.0, i, step_m=0.0)) is None for i in range(3))
 

@@ -202,7 +202,7 @@ def test_in_images_the_outline_gives_the_pose(setting):
 
 
 def test_frames_that_are_no_two_alike_are_refused(setting):
-    jolted = [np.stack([np.roll(f, 3 * (i == 4), axis=1) for i, f in enumerate(s)]) for s in setting.images]
+    jolted = [np.stack([np.roll(f, 12 * (i == 4), axis=1) for i, f in enumerate(s)]) for s in setting.images]
     found = in_images(setting, jolted)
     assert isinstance(found, str)
     assert "left camera" in found

@@ -10,7 +10,7 @@ import pytest
 
 from executive.types import Centres, HeadReading, Shot, Window
 from sim_pybullet.error_model import FLOOR_PX, centre_error
-from sim_pybullet.geometric import CENTROID_SIGMA_PX, CentreDeveloper
+from sim_pybullet.geometric import CentreDeveloper, middle_sigma_px
 from sim_pybullet.leds import MarkerOptics, Spot, add_spot
 from sim_pybullet.radiometry import Exposure, calibrated_light, line_spread, spread_sigma_px
 from sim_pybullet.raycast import HeightField
@@ -123,8 +123,15 @@ def test_without_light_the_middle_of_the_rover_is_the_answer():
         views = [picture().view(s, camera) for s in scenes]
         points = [s.T_site_body[:3, 3] + (0, 0, 0.065) for s in scenes]
         middle = np.mean([v.project(p)[0] for v, p in zip(views, points, strict=True)], axis=0)
-        np.testing.assert_allclose(uv[:, camera, 0].mean(axis=0), middle, atol=4 * 15 / math.sqrt(300))
-    assert uv[:, :, 0].std(axis=0).mean() == pytest.approx(CENTROID_SIGMA_PX, rel=0.1)
+        sigma_px = middle_sigma_px(picture().rig, float(np.linalg.norm(views[1].position_site_m - points[1])))
+        np.testing.assert_allclose(uv[:, camera, 0].mean(axis=0), middle, atol=4 * sigma_px / math.sqrt(300))
+        assert uv[:, camera, 0].std(axis=0).mean() == pytest.approx(sigma_px, rel=0.1)
+
+
+def test_the_middle_shows_as_well_as_an_outline_lies_in_pixels_that_bin_a_rover_near_by():
+    rig = picture().rig
+    assert middle_sigma_px(rig, 2.0) == pytest.approx(2 * middle_sigma_px(rig, 4.0))
+    assert middle_sigma_px(rig, 15.0) == middle_sigma_px(rig, 20.0)
 
 
 def _fitted(image: np.ndarray, spot: Spot, first: int) -> tuple[float, float]:
