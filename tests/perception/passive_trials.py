@@ -102,9 +102,12 @@ def scene(body: Transform, joints: tuple[float, float], head: tuple[float, float
 
 @dataclass(frozen=True)
 class Setting:
-    """What was drawn: the true body, what the executive knows, and the images of both cameras."""
+    """What was drawn: the true body and all of its scene, what the executive knows, and the images of both
+    cameras."""
 
     body: Transform
+    terrain: Terrain
+    scene: SceneState
     chain: Chain
     expectation: Expectation
     ground: Ground
@@ -142,7 +145,8 @@ def draw(range_m: float, wrong: Wrong, rng: np.random.Generator) -> Setting:
     tilt = roll_pitch(body.rotation)[0] + RIG.rover.inclinometer_sigma_rad * rng.standard_normal(2)
     expectation = expect(chain, predicted, said_head, joints, (float(tilt[0]), float(tilt[1])))
     windows = empty_window(chain, expectation)
-    images = _expose(picture, scene(body, true_joints, _head(said_head, rng)), windows, rng)
+    truth = scene(body, true_joints, _head(said_head, rng))
+    images = _expose(picture, truth, windows, rng)
     gone = Transform(np.eye(3), np.array([-500.0, 0.0, 0.0]))
     elsewhere = np.radians(rng.choice([-1, 1], 2) * rng.uniform(0.5, 2.0, 2)) * (wrong is Wrong.BACKGROUND)
     empty = scene(gone, true_joints, _head(np.add(said_head, elsewhere), rng))
@@ -152,7 +156,7 @@ def draw(range_m: float, wrong: Wrong, rng: np.random.Generator) -> Setting:
         true_sun.elevation_rad + SUN_SIGMA_RAD * rng.standard_normal(),
     )
     ground = Ground(float(surveyed), SURVEY_SIGMA_M)
-    return Setting(body, chain, expectation, ground, sun, windows, images, backgrounds)
+    return Setting(body, terrain, truth, chain, expectation, ground, sun, windows, images, backgrounds)
 
 
 def _head(said: object, rng: np.random.Generator) -> tuple[float, float]:
@@ -176,9 +180,14 @@ def run_trial(range_m: float, rng: np.random.Generator, wrong: Wrong = Wrong.NOT
     seconds = watch.elapsed_s()
     if not isinstance(found, PassiveFix):
         return Trial(None, None, seconds, found.why)
-    body = found.site_body
-    error = np.concatenate([s.body.position_m - body.position_m, log_map(s.body.rotation @ body.rotation.T)])
-    ahead = s.body.position_m[:2] / np.linalg.norm(s.body.position_m[:2])
+    return judged(s, found.site_body, found.covariance, seconds)
+
+
+def judged(setting: Setting, body: Transform, covariance: np.ndarray, seconds: float) -> Trial:
+    """A pose against the truth."""
+    true = setting.body
+    error = np.concatenate([true.position_m - body.position_m, log_map(true.rotation @ body.rotation.T)])
+    ahead = true.position_m[:2] / np.linalg.norm(true.position_m[:2])
     axes = np.eye(6)
     axes[:2, :2] = [ahead, [-ahead[1], ahead[0]]]
-    return Trial(axes @ error, axes @ found.covariance @ axes.T, seconds, "")
+    return Trial(axes @ error, axes @ covariance @ axes.T, seconds, "")
