@@ -39,6 +39,7 @@ _FEW_GATE = 0.99  # where two markers must do
 _RIVAL = 6.0  # twice the difference in log likelihood below which another pose explains the images as well
 _LEAST_MARKER_SNR = 2.5  # of one marker in both cameras, to count as shining once the pose is known
 _LEAST_MARKERS = 2
+_LEAST_SNR_ALONE = 7.0  # of one camera: with less, heading and range are bent more than a covariance can say
 _AS_EXPECTED = 0.6  # of the joint SNR expected: a pose with less leaves light unexplained, or LEDs are dim
 _GLOW = 0.35  # of the brightest marker's flux: less may be an LED that is dim, or none
 _NOISE_RATE = 0.05  # of noise alone, in the search for what the markers that do not shine at a pose may show
@@ -102,6 +103,8 @@ def _find(scene: JointScene, images: Sequence[Difference]) -> _Found | Rejection
     """The pose that the images show most clearly, if more clearly than noise would."""
     likely, volume = scene.climbed(images)
     threshold = scene.threshold(volume, FALSE_ALARM_RATE)
+    if len(scene.seeing) < 2:
+        threshold = max(threshold, _LEAST_SNR_ALONE)
     shown = [one for one in likely if one.snr >= threshold]
     if not shown:
         strongest = max((one.snr for one in likely), default=0.0)
@@ -138,10 +141,10 @@ def _too_few(scene: JointScene, images: Sequence[Difference], found: _Found) -> 
     else.
     """
     bright, best = found.bright, found.best
-    said = f"{found.shining} of {len(bright)} markers shine at the best pose"
+    said = f"{int(bright.sum())} of {len(bright)} markers shine at the best pose"
     if bright.sum() > _LEAST_MARKERS:
         return ""
-    if found.shining < _LEAST_MARKERS or len(scene.seeing) < 2:
+    if bright.sum() < _LEAST_MARKERS or len(scene.seeing) < 2:
         return said
     noise = scene.threshold(found.volume, _NOISE_RATE)
     if best.snr < noise + _SURE:

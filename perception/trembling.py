@@ -1,8 +1,9 @@
 """Frames of a head that trembles by pixels, brought onto one another, and what its trembling leaves unknown.
 
-A frame is moved as a whole, noise included, by eight-tap interpolation: that takes some 5 % of the noise and
-leaves the markers what they are. The mean of the sequence is where the frames are brought to; that the head
-pointed there on average as well is known to no better than its sway over the root of the frames.
+A frame is moved as a whole by its Fourier transform, which leaves noise as white and as strong as it was:
+eight-tap interpolation takes a fifth of it, and centres would seem that much better than they are. The mean
+of the sequence is where the frames are brought to; that the head pointed there on average as well is known
+to no better than its sway over the root of the frames.
 """
 
 from __future__ import annotations
@@ -14,13 +15,15 @@ from dataclasses import replace
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy import fft
 
 from executive.types import Array
 from perception.chain import Chain
 
 Frames = NDArray[np.float32]
 _ROUNDS = 2
-_RIM_PX = 4  # that the interpolation spoils
+_REFLECTED_PX = 12  # beyond the rim, so that it does not ring
+_RIM_PX = 4  # that this spoils all the same
 
 
 def coarse_shifts(frames: Frames) -> Array:
@@ -41,10 +44,13 @@ def coarse_shifts(frames: Frames) -> Array:
 def moved_back(frames: Frames, shift_px: Array) -> Frames:
     """Frames (n, h, w) moved by minus their shifts (n, 2)."""
     moved = np.empty_like(frames)
-    flags = cv2.INTER_LANCZOS4 | cv2.WARP_INVERSE_MAP
-    for out, image, (u, v) in zip(moved, frames, shift_px.tolist(), strict=True):
-        there, (height, width) = np.array([[1.0, 0.0, u], [0.0, 1.0, v]]), image.shape
-        out[:] = cv2.warpAffine(image, there, (width, height), flags=flags, borderMode=cv2.BORDER_REPLICATE)
+    height, width = (n + 2 * _REFLECTED_PX for n in frames.shape[1:])
+    rows, columns = fft.fftfreq(height)[:, None], fft.rfftfreq(width)
+    for out, frame, (u, v) in zip(moved, frames, shift_px.tolist(), strict=True):
+        waves = fft.rfft2(np.pad(frame, _REFLECTED_PX, mode="symmetric"))
+        waves *= np.exp(2j * np.pi * (rows * v + columns * u)).astype(np.complex64)
+        whole = fft.irfft2(waves, s=(height, width))
+        out[:] = whole[_REFLECTED_PX:-_REFLECTED_PX, _REFLECTED_PX:-_REFLECTED_PX]
     return moved
 
 
