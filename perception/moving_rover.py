@@ -53,7 +53,7 @@ class _Pass:
     turns: tuple[float, ...] = (0.0,)
 
 
-_PASSES = (_Pass(2, 20, 1.5), _Pass(1, 14, 1.0, (-1.2, 0.0, 1.2)), _Pass(1, 4, 1.0, (-0.5, 0.0, 0.5)))
+_PASSES = (_Pass(2, 20, 1.5), _Pass(1, 14, 1.0, (-1.0, 0.0, 1.0)), _Pass(1, 4, 1.0))
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import cv2
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from executive.rig import RigCalibration
 from executive.types import Array, Vec2
 from perception.body import Transform
+from perception.camera import StereoModel
 from perception.chain import Chain
 from perception.passive.hiding import near_first
 from perception.passive.solids import Indices, Solids, rover_solids
@@ -54,10 +55,17 @@ class Outline:
     binning: int
     corner_px: tuple[int, int]
 
+    @cached_property
+    def _ih_site(self) -> Transform:
+        return self.chain.site_ih(self.head_rad).inverse()
+
+    @cached_property
+    def _model(self) -> StereoModel:
+        return self.chain.model.camera(self.camera)
+
     def pixels(self, points_site_m: Array) -> Array:
         """Binned pixels (n, 2) of points (n, 3) in site."""
-        points_ih = self.chain.site_ih(self.head_rad).inverse().apply(points_site_m)
-        uv = self.chain.model.camera(self.camera).project(points_ih)[0]
+        uv = self._model.project(self._ih_site.apply(points_site_m))[0]
         return np.asarray((uv + 0.5 - self.corner_px) / self.binning - 0.5)
 
     def full_px(self, uv: Array) -> Array:
@@ -83,7 +91,7 @@ class Outline:
 
     def _eye_body(self, site_body: Transform) -> Array:
         """The camera (3,) in the rover's body [m]."""
-        eye_site = self.chain.site_ih(self.head_rad).apply(self.chain.model.position_ih_m[self.camera][None])
+        eye_site = self._ih_site.inverse().apply(self._model.position_ih_m)
         eye: Array = site_body.inverse().apply(eye_site)[0]
         return eye
 

@@ -17,7 +17,7 @@ from executive.types import Array
 Picture = NDArray[np.float32]
 
 LARGEST_SHIFT_PX = 20.0
-_MOST_STEPS = 8
+_MOST_STEPS = 6
 _CONVERGED_PX = 0.015
 _GAINS = (0.5, 2.0)
 _RIM_PX = 6  # of the halved picture, where moving brings in what was not seen

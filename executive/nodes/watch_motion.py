@@ -25,7 +25,7 @@ class WatchMotion(Leaf):
 
     gate = In[float](NUMBER, "standard deviations that the tendency may be off", default=4.0)
     allowance = In[float](
-        LENGTH, "what a moving shadow may shift the middle of the fragments by", default=0.25
+        LENGTH, "what a tendency may be off by besides its covariance: other things move too", default=0.25
     )
 
     outcomes = (Reason.UNEXPECTED,)
