@@ -68,7 +68,7 @@ def test_a_strong_marker_does_not_pass_for_a_change_of_light():
 
 def test_a_jolted_frame_is_told_and_found():
     _, stack = images(np.random.default_rng(5))
-    stack[7] = np.roll(stack[7], 2, axis=1)
+    stack[7] = np.roll(stack[7], 9, axis=1)
     found = compare(stack, noise_counts())
     assert found.problem
     assert int(found.rest_counts.argmax()) == 7
