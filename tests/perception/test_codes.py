@@ -99,7 +99,7 @@ def test_a_frame_of_another_scene_is_reported():
     rng = np.random.default_rng(5)
     leds = coded_sequence(4, 32)
     frames = sequence(rng, background_e(rng, SHAPE), leds, {})
-    frames[20] = np.roll(frames[20], 3, axis=1)
+    frames[20] = np.roll(frames[20], 9, axis=1)
     assert "shift" in stacked(leds, frames).problem
 
 

@@ -215,7 +215,7 @@ def test_swapped_identities_give_no_false_pose(swap):
 
 def test_jolted_images_are_taken_again_then_reported():
     def jolt(stack):
-        stack[len(stack) // 2] = np.roll(stack[len(stack) // 2], 3, axis=1)
+        stack[len(stack) // 2] = np.roll(stack[len(stack) // 2], 9, axis=1)
         return stack
 
     r = robot(spoil=jolt)
