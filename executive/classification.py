@@ -118,6 +118,10 @@ class Classification:
         """Where the rover should be now."""
         return self.motion.pose()
 
+    def joined(self, fix: PoseEstimate) -> PoseEstimate:
+        """The fix just taken in, joined with what was predicted."""
+        return prediction.joined(self.motion, fix)
+
     def beyond_reach(self, fix: PoseEstimate) -> str | None:
         """Why the rover cannot have come to where a fix sees it, None if it can."""
         return None if self._reach is None else self._reach.beyond(fix)

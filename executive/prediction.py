@@ -200,6 +200,18 @@ def unusable(fix: PoseEstimate, since_s: float) -> str | None:
     return None
 
 
+def joined(state: MotionState, fix: PoseEstimate) -> PoseEstimate:
+    """A fix with the place and heading of the filter that took it in: near by its own, far away, where the
+    belts know the way since the last one better than eyes do, rather the prediction's."""
+    planar, rest = np.ix_([0, 1, 5], [0, 1, 5]), np.ix_([2, 3, 4], [2, 3, 4])
+    covariance = np.zeros((6, 6))
+    covariance[planar], covariance[rest] = state.covariance[:3, :3], fix.covariance[rest]
+    x, y, heading = state.mean[:3].tolist()
+    quat = quat_from_heading_tilt(heading, state.roll_rad, state.pitch_rad)
+    place = (x, y, fix.position_site_m[2])
+    return replace(fix, position_site_m=place, quat_site_body=quat, covariance=covariance)
+
+
 def relocate(state: MotionState, fix: PoseEstimate) -> MotionState:
     """The state put at a fix without learning from it: for a move that the model does not explain."""
     covariance = np.zeros((6, 6))

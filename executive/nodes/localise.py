@@ -14,7 +14,7 @@ class Localise(ActionLeaf):
     """Measure the rover's pose by vision, at rest, and hold it against the prediction."""
 
     quality = In[Quality](QUALITY, "trend, precise or far", default=Quality.PRECISE)
-    pose = InOut[PoseEstimate](POSE, "the pose, as measured")
+    pose = InOut[PoseEstimate](POSE, "the pose, as measured and predicted")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
     budget = In[float](DURATION, "mission time it may take", default=900.0)
     position = In[float](LENGTH, "standard deviation wanted; 0: that of the quality", default=0.0)
@@ -61,7 +61,7 @@ class Localise(ActionLeaf):
         fix = outcome.value.on(self.segment)
         self.services.journal.assessment(classification.fixed(fix))
         self.services.journal.estimate(fix)
-        self.pose = fix
+        self.pose = classification.joined(fix).on(self.segment)
         return Outcome(Reason.DONE, "; ".join(filter(None, (_summary(fix), outcome.detail))), fix)
 
     def held_against_what_can_be(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:

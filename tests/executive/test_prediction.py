@@ -170,3 +170,28 @@ def test_covariance_stays_symmetric_and_positive_over_a_long_trek() -> None:
 def test_a_pose_that_is_no_number_or_old_says_nothing(change, why):
     pose = PoseEstimate(101.0, (1.0, 2.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), Source.MARKERS)
     assert prediction.unusable(replace(pose, **change), since_s=100.0) == why
+
+
+@given(st.floats(0.0005, 0.1), st.floats(0.001, 0.1), st.floats(-1.0, 1.0))
+def test_a_joined_fix_is_no_less_certain_than_the_fix_and_lies_within_both(
+    sigma_m: float, sigma_rad: float, luck: float
+) -> None:
+    start = prediction.start(pose(10.0, 2.0, 0.5), NOISE)
+    moved = prediction.predict(start, 0.1, 0.1, GAUGE_M, 71.0, NOISE)
+    fix = pose(moved.pose().x_m + luck * sigma_m, moved.pose().y_m, 0.5, sigma_m, sigma_rad)
+    found = prediction.joined(prediction.correct(moved, fix, NOISE), fix)
+    for i in (0, 1, 5):
+        assert found.covariance[i, i] <= min(fix.covariance[i, i], moved.pose().covariance[i, i]) * (1 + 1e-6)
+    assert np.linalg.eigvalsh(found.covariance)[0] > 0
+    low, high = sorted((moved.pose().x_m, fix.x_m))
+    slack = 0.2 * abs(luck) * sigma_m  # place and heading are correlated
+    assert low - slack - 1e-9 <= found.x_m <= high + slack + 1e-9
+    assert (found.source, found.markers, found.time_s) == (fix.source, fix.markers, fix.time_s)
+
+
+def test_what_the_model_does_not_explain_is_where_the_fix_sees_it() -> None:
+    state = prediction.start(pose(1.0, 2.0, 0.5), NOISE)
+    fix = pose(1.4, 1.8, -0.3, 0.05, 0.1)
+    found = prediction.joined(prediction.relocate(state, fix), fix)
+    assert (found.x_m, found.y_m) == (fix.x_m, fix.y_m)
+    assert found.heading_rad == pytest.approx(fix.heading_rad)
