@@ -9,6 +9,7 @@ tried too.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,6 +28,7 @@ from perception.pose import Fix, Readings, chi2_limit
 from perception.posterior import posterior
 from perception.prediction import Expectation
 from perception.psf import Spread
+from perception.rotation import log_map
 
 __all__ = ["FALSE_ALARM_RATE", "JointFix", "joint_fix", "relative_gain"]
 
@@ -40,9 +42,11 @@ _RIVAL = 6.0  # twice the difference in log likelihood below which another pose 
 _LEAST_MARKER_SNR = 2.5  # of one marker in both cameras, to count as shining once the pose is known
 _LEAST_MARKERS = 2
 _LEAST_SNR_ALONE = 7.0  # of one camera: with less, heading and range are bent more than a covariance can say
-_AS_EXPECTED = 0.6  # of the joint SNR expected: a pose with less leaves light unexplained, or LEDs are dim
+_AS_EXPECTED = 0.75  # of the joint SNR expected: a pose with less leaves light unexplained, or LEDs are dim
 _GLOW = 0.35  # of the brightest marker's flux: less may be an LED that is dim, or none
 _NOISE_RATE = 0.05  # of noise alone, in the search for what the markers that do not shine at a pose may show
+_ELSEWHERE_SIGMAS = 3.5  # of x, y or heading
+_PLANAR = [0, 1, 5]
 _SURE = 3.0  # above that, the joint SNR at which markers as bright would hardly stay below it
 
 
@@ -71,7 +75,7 @@ def joint_fix(
     swapped, said = _exchanged(scene, images, found)
     if swapped is not None:
         return noted(_gated(scene, swapped), said)
-    lack = _too_few(scene, images, found)
+    lack = _too_few(scene, images, found) or _otherwise(scene, images, found)
     return Rejection(lack, found.shining) if lack else _gated(scene, found)
 
 
@@ -152,6 +156,28 @@ def _too_few(scene: JointScene, images: Sequence[Difference], found: _Found) -> 
     others, _ = scene.climbed([_only(one, ~bright) for one in images])
     elsewhere = any(one.snr > noise and not alike(scene.chain, one, best) for one in others)
     return f"{said}, and the others elsewhere" if elsewhere else ""
+
+
+def _otherwise(scene: JointScene, images: Sequence[Difference], found: _Found) -> str:
+    """Where else a rover with one or two LEDs dark explains the images about as well; empty if nowhere."""
+    worth, everyone = _worth(scene.expectation, found.best), range(len(found.bright))
+    for count in range(_LEAST_MARKERS, len(found.bright)):
+        for shining in itertools.combinations(everyone, count):
+            mask = np.isin(everyone, shining)
+            for one in scene.climbed([_only(image, mask) for image in images])[0]:
+                lead = worth - _worth(scene.expectation, one)
+                if lead < _RIVAL and _contradict(found.best, one):
+                    said = f"one with {count} of {len(mask)} markers, {lead:.1f} apart in log likelihood"
+                    return f"two poses explain the images, {said}"
+    return ""
+
+
+def _contradict(best: Likely, other: Likely) -> bool:
+    """Whether another pose lies where the best one does not allow it."""
+    here, there = best.state.site_body, other.state.site_body
+    turn = log_map(there.rotation @ here.rotation.T)
+    off = np.concatenate([there.position_m - here.position_m, turn])[_PLANAR]
+    return bool((np.abs(off) > _ELSEWHERE_SIGMAS * np.sqrt(np.diag(best.covariance)[_PLANAR])).any())
 
 
 def _nothing(markers: int) -> Difference:
