@@ -1,13 +1,14 @@
 """What disturbs the localisation by LEDs, one thing at a time: detected, rightly refused, or false.
 
-    python -m benchmarks.disturbances [--trials 300] [--ranges 1.6 5 10 20 | --all] [--only NAME] [--jobs N] [--wide]
+    python -m benchmarks.disturbances [--trials 300] [--ranges 1.6 5 10 20 | --all] [--only NAME] [--wide]
 
 A row a disturbance and range, with the on/off pairs of `benchmarks.perception`, the prediction off by up to
-50 mm and 3 degrees as after a leg or two (`--wide`: by 150 mm and 10 degrees, in four times the time). Holds where 95 % are
-detected, or each of the others but 5 % is refused with a reason that names what is wrong or is the truth
-(tests/perception/disturbances.py), and at most 0.5 % are false: accepted, but x, y or yaw off by more than 5
-of their own sigmas. The most frequent reasons stand below a row that refuses. The exit code is 1 where a row
-does not hold. A whole run (17 disturbances, 1.6, 5, 10 and 20 m) goes to docs/images/disturbances_table.txt.
+50 mm and 3 degrees as after a leg or two (`--wide`: by 150 mm and 10 degrees, in four times the time). Holds
+where 95 % are detected, or each of the others but 5 % is refused with a reason that names what is wrong or is
+the truth (tests/perception/disturbances.py), and at most 0.5 % are false: accepted, but x, y or yaw off by
+more than 5 of their own sigmas. The most frequent reasons stand below a row that refuses. The exit code is 1
+where a row does not hold. A whole run (17 disturbances at four ranges) writes
+docs/images/disturbances_table.txt.
 """
 
 from __future__ import annotations
