@@ -33,8 +33,9 @@ _LEAST_EVIDENT = 0.25  # the same of what itself moved; rovers have 0.29 or more
 _SPARSE, _PLAIN = 4, 3.0  # a picture whose contrast is below so many pixel noises shows nothing
 _LARGEST_TURN_RAD = math.radians(5.0)
 _MOST_APART_PX = 1.5  # binned, between what is seen and what a point in space can show
-_LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.12, 0.12  # binned
+_LIE_SIGMA_PX, _STEP_SIGMA_PX = 0.12, 0.30  # binned
 _SHAPE_SIGMA_M = 0.006  # what the drawing leaves out, and a heading that is off
+_STEP_SHAPE_SIGMA_M = 0.002  # of a step: a rover that pitches shows other edges
 _HEIGHT_SIGMA_M = 0.03
 _CLIMB_SIGMA_M = 0.007  # of a step: it mostly follows the ground
 _UNKNOWN_M = 10.0
@@ -212,7 +213,7 @@ class _Search:
         H = np.diag([_UNKNOWN_M**-2, _UNKNOWN_M**-2, _CLIMB_SIGMA_M**-2]) + weight * by_site.T @ by_site
         P = np.linalg.inv(H)
         step = np.zeros(3) if seen is None else P @ by_site.T @ seen * weight
-        return step, P
+        return step, P + np.eye(3) * _STEP_SHAPE_SIGMA_M**2
 
     def regions(self) -> tuple[Window | None, Window | None]:
         left, right = (self.fragments.get(camera) for camera in (LEFT, RIGHT))
