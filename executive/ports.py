@@ -164,7 +164,10 @@ class LocaliseRequest:
 
 
 class Localizer(Protocol):
-    """Finds the rover with head and cameras, and says where the head should look."""
+    """Finds the rover with head and cameras, and says where the head should look.
+
+    A class may have a static `preload()`: campaigns call it once before they fork a process for each case.
+    """
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
         """Measure; fails with a reason the classification can use, never with a guess."""

@@ -44,6 +44,7 @@ from perception.scouting import Scout
 from perception.sight import Eyes, Sight
 from perception.tally import Tally
 from perception.tendency import Tendency
+from perception.warm_up import warm_up
 
 
 class LedStereoLocalizer:
@@ -62,6 +63,11 @@ class LedStereoLocalizer:
         self._scout = Scout(devices, self._chain, clock, self._aim, views)
         self._outlines = Outlines(devices, self._chain, clock, self._aim, views)
         self.last: Localisation | None = None
+
+    @staticmethod
+    def preload() -> None:
+        """What processes that fork from this one would each do anew; see executive.backends."""
+        warm_up()
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
         """Measure the rover's pose; see executive.ports.Localizer."""

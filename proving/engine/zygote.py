@@ -21,7 +21,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from executive import plugins, units
-from executive.backends import BackendSpec
 from executive.clock import Stopwatch
 from executive.errors import LongarmError, PluginError
 from executive.pool_plugins import load_strategies, strategy_trees
@@ -176,9 +175,9 @@ def _preload() -> None:
     for group in (plugins.BACKENDS, plugins.LOCALIZERS, plugins.STRATEGIES, plugins.FAULTS):
         for name in plugins.found(group):
             with suppress(PluginError):
-                plugin = plugins.load(group, name)
-                if isinstance(plugin, BackendSpec):
-                    plugin.preload()
+                preload = getattr(plugins.load(group, name), "preload", None)
+                if preload is not None:
+                    preload()
     with suppress(LongarmError):
         strategy_trees(load_strategies())
     units.factor("m")  # half a second the first time
