@@ -44,6 +44,7 @@ _LEAST_MARKERS = 2
 _LEAST_SNR_ALONE = 7.0  # of one camera: with less, heading and range are bent more than a covariance can say
 _AS_EXPECTED = 0.75  # of the joint SNR expected: a pose with less leaves light unexplained, or LEDs are dim
 _GLOW = 0.35  # of the brightest marker's flux: less may be an LED that is dim, or none
+_AS_BRIGHT = 0.6  # of it: less may be another's light, grazed
 _NOISE_RATE = 0.05  # of noise alone, in the search for what the markers that do not shine at a pose may show
 _ELSEWHERE_SIGMAS = 3.5  # of x, y or heading
 _PLANAR = [0, 1, 5]
@@ -125,7 +126,8 @@ def _exchanged(scene: JointScene, images: Sequence[Difference], found: _Found) -
     """A pose at which all markers shine once one or two couples of LEDs are exchanged, if that explains the
     images better, and which couples these are."""
     better: tuple[_Found | None, str] = None, ""
-    sure = found.bright & ~found.bright.all()
+    flux = found.best.flux_counts
+    sure = (flux > _AS_BRIGHT * flux.max()) & ~found.bright.all()
     least = found.best.snr**2 + _RIVAL
     for order, said in exchanges(len(found.bright)):
         moved = [(m, at) for m, at in enumerate(order) if m != at]
