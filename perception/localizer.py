@@ -28,6 +28,7 @@ from executive.types import (
 from executive.types import View as Seen
 from perception.aim import Aim
 from perception.chain import Chain
+from perception.checked_cameras import CheckedCameras
 from perception.empty_views import EmptyViews
 from perception.exposure import View, view_of
 from perception.head_watch import HeadWatch, surprising
@@ -53,7 +54,7 @@ class LedStereoLocalizer:
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
         self._clock = clock
         self._chain = Chain.of(rig)
-        self._tally = Tally(devices.cameras, clock)
+        self._tally = Tally(CheckedCameras(devices.cameras, rig.sensor), clock)
         devices = replace(devices, cameras=self._tally)
         self._aim = Aim(devices, self._chain, clock)
         self._eyes = Eyes(devices, rig, clock)

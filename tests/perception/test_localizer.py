@@ -224,6 +224,15 @@ def test_jolted_images_are_taken_again_then_reported():
     assert len(r.shots) == 2
 
 
+@pytest.mark.parametrize("range_m", [3.0, 10.0])
+def test_fewer_frames_than_ordered_are_the_cameras_failure(range_m):
+    r = robot(range_m)
+    r.spoil = lambda stack: stack[:-1]
+    outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted())))
+    assert outcome.reason is Reason.DEVICE
+    assert "got frames of shape" in outcome.detail
+
+
 def test_a_slow_drift_of_light_does_no_harm():
     r = robot(light_per_frame=0.001)
     outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted())))
