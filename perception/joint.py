@@ -39,6 +39,7 @@ _GATE = 0.9999
 _EVEN_GATE = 0.99  # beyond it the markers are not taken to shine alike
 _FEW_GATE = 0.99  # where two markers must do
 _RIVAL = 6.0  # twice the difference in log likelihood below which another pose explains the images as well
+_DARK_RIVAL = 3.0  # the same where that pose needs LEDs to be dark, which they seldom are
 _LEAST_MARKER_SNR = 2.5  # of one marker in both cameras, to count as shining once the pose is known
 _LEAST_MARKERS = 2
 _LEAST_SNR_ALONE = 7.0  # of one camera: with less, heading and range are bent more than a covariance can say
@@ -168,7 +169,7 @@ def _otherwise(scene: JointScene, images: Sequence[Difference], found: _Found) -
             mask = np.isin(everyone, shining)
             for one in scene.climbed([_only(image, mask) for image in images])[0]:
                 lead = worth - _worth(scene.expectation, one)
-                if lead < _RIVAL and _contradict(found.best, one):
+                if lead < _DARK_RIVAL and _contradict(found.best, one):
                     said = f"one with {count} of {len(mask)} markers, {lead:.1f} apart in log likelihood"
                     return f"two poses explain the images, {said}"
     return ""
