@@ -10,6 +10,7 @@ allowed by a guess from the case before, beyond that the case is left out.
 from __future__ import annotations
 
 import argparse
+import importlib.util
 from collections.abc import Callable
 
 import numpy as np
@@ -56,6 +57,10 @@ def rtamts_s(template: str, window: int, x: Array, y: Array) -> float:
     return watch.elapsed_s()
 
 
+def no_time(*case: object) -> None:
+    """What a library that is not there takes."""
+
+
 def within_patience(
     run: Callable[[str, int, Array, Array], float], patience_s: float
 ) -> Callable[[str, int, Array, Array], float | None]:
@@ -79,12 +84,8 @@ def main() -> None:
     parser.add_argument("--windows", type=int, nargs="+", default=[100, 5_000])
     parser.add_argument("--patience", type=float, default=120.0, help="seconds to wait for one case of rtamt")
     chosen = parser.parse_args()
-    try:
-        import rtamt  # noqa: F401  (only whether it is there)
-    except ImportError:
-        theirs: Callable[[str, int, Array, Array], float | None] = lambda *case: None  # noqa: E731
-    else:
-        theirs = within_patience(rtamts_s, chosen.patience)
+    rtamt_there = importlib.util.find_spec("rtamt") is not None
+    theirs = within_patience(rtamts_s, chosen.patience) if rtamt_there else no_time
     ours_s(FORMULAS[0], 1, *signals(1))  # the first to speak of seconds waits for the table of units
     print(f"{'formula':66} {'samples':>8} {'window':>7} {'ours [s]':>9} {'rtamt [s]':>10}")
     for template in FORMULAS:

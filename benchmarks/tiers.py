@@ -14,12 +14,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from executive.backends import BackendRequest
-from executive.plugins import BACKENDS, load
 from executive.ports import LocaliseRequest
 from executive.prediction import quat_from_heading_tilt
 from executive.rig import RigCalibration
 from executive.types import Outcome, Point, PoseEstimate, Quality, Segment, Source
 from perception.localizer import LedStereoLocalizer
+from sim_pybullet import BACKEND
 from sim_pybullet.backend import SimBackend
 from sim_pybullet.config import WorldConfig
 
@@ -31,8 +31,7 @@ def backend_at(range_m: float, tier: str) -> SimBackend:
         {"terrain": {"procedural": {"roughness": "4 mm"}}, "start": {"heading": "30 deg"}}
     )
     request = BackendRequest(world, route, 11, tier, RigCalibration(), None, 1.0)
-    spec = load(BACKENDS, "pybullet")
-    return spec.create(request)  # type: ignore[attr-defined, no-any-return]  # found by name
+    return BACKEND.create(request)
 
 
 def wait(backend: SimBackend, action) -> Outcome:

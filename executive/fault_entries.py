@@ -73,7 +73,7 @@ def fault_entries(source: Source, at: Place, setting: Setting) -> tuple[Resolved
     problems = Problems()
     found: list[ResolvedFault] = []
     for place, entry in _entries(source, at, problems):
-        fault = problems.attempt(lambda place=place, entry=entry: _fault(source, place, entry, setting))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+        fault = problems.attempt(_fault, source, place, entry, setting)
         if fault is not None:
             if fault.name in {other.name for other in found}:
                 message = f'got a second fault named "{fault.name}", expected a name of its own'
@@ -124,17 +124,17 @@ def _fault(source: Source, place: Place, entry: dict[str, Any], setting: Setting
         raise ConfigError([source.at(place).problem(message)])
     kind = kinds[0]
     problems = Problems()
-    spec = problems.attempt(lambda: _spec(source, (*place, kind), kind, setting))
-    parameters = problems.attempt(lambda: _parameters(source, (*place, kind), spec)) if spec else None
-    start = problems.attempt(lambda: _start(source, place, entry, setting))
-    duration_s = problems.attempt(lambda: _duration_s(source, place, entry, spec))
-    profile = problems.attempt(lambda: _profile(source, place, entry, spec))
-    name = problems.attempt(lambda: _name(source, place, "name", entry, kind))
-    cause = problems.attempt(lambda: _name(source, place, "cause", entry, None))
+    spec = problems.attempt(_spec, source, (*place, kind), kind, setting)
+    parameters = problems.attempt(_parameters, source, (*place, kind), spec) if spec else None
+    start = problems.attempt(_start, source, place, entry, setting)
+    duration_s = problems.attempt(_duration_s, source, place, entry, spec)
+    profile = problems.attempt(_profile, source, place, entry, spec)
+    name = problems.attempt(_name, source, place, "name", entry, kind)
+    cause = problems.attempt(_name, source, place, "cause", entry, None)
     problems.check()
-    assert spec is not None  # noqa: S101
+    assert spec is not None  # noqa: S101  (else a problem was found)
     assert parameters is not None  # noqa: S101  (else a problem was found)
-    assert start is not None  # noqa: S101
+    assert start is not None  # noqa: S101  (else a problem was found)
     return ResolvedFault(name or kind, spec, parameters, start, duration_s, profile, cause)
 
 
@@ -145,7 +145,6 @@ def _spec(source: Source, place: Place, kind: str, setting: Setting) -> FaultSpe
         message = f'got the unknown fault "{kind}", expected {expected}{guess(kind, known)}'
         raise ConfigError([source.key_at(place).problem(message)])
     spec = plugins.load(plugins.FAULTS, kind, FaultSpec)
-    assert isinstance(spec, FaultSpec)  # noqa: S101  (load has checked)
     fits = (("backend", setting.backend, spec.backends), ("tier", setting.tier, spec.tiers))
     for what, got, able in fits:
         if able and got not in able:
@@ -162,7 +161,7 @@ def _parameters(source: Source, place: Place, spec: FaultSpec) -> BaseModel:
 
 def _start(source: Source, place: Place, entry: dict[str, Any], setting: Setting) -> Trigger:
     if "from" not in entry:
-        return Trigger(time="0 s")  # type: ignore[arg-type]  # read as from a file
+        return Trigger.model_validate({"time": "0 s"})
     start = parse(source, Trigger, (*place, "from"))
     if start.when is not None:
         try:

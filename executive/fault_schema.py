@@ -26,9 +26,7 @@ def faults(defs: Schema) -> Schema:
 
 
 def _spec(name: str) -> FaultSpec:
-    spec = plugins.load(plugins.FAULTS, name, FaultSpec)
-    assert isinstance(spec, FaultSpec)  # noqa: S101  (load has checked)
-    return spec
+    return plugins.load(plugins.FAULTS, name, FaultSpec)
 
 
 def _fault(spec: FaultSpec, defs: Schema) -> Schema:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import sys
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from typing import TypeVar, overload
 
 from executive.errors import PluginError
+
+T = TypeVar("T")
 
 BACKENDS = "longarm.backends"
 STRATEGIES = "longarm.strategies"
@@ -34,6 +37,10 @@ def _installed(group: str, path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
     return tuple(sorted(entry_points(group=group), key=lambda p: (p.name, p.value)))
 
 
+@overload
+def load(group: str, name: str) -> object: ...
+@overload
+def load(group: str, name: str, kind: type[T]) -> T: ...
 def load(group: str, name: str, kind: type | None = None) -> object:
     """Import what `name` stands for; PluginError naming the entry point when that fails.
 

@@ -124,26 +124,26 @@ def resolve(source: Source) -> ResolvedScenario:
     source = ungrouped(with_lists(source), ("faults",))
     seed = source.data.get("seed", 0) if isinstance(source.data, dict) else 0
     if isinstance(seed, int):  # what else it may be is told where the file is read
-        source = problems.attempt(lambda: _drawn(source, abs(seed))) or source
-    file = problems.attempt(lambda: parse(source, ScenarioFile))
+        source = problems.attempt(_drawn, source, abs(seed)) or source
+    file = problems.attempt(parse, source, ScenarioFile)
     backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
-    backend = problems.attempt(lambda: _backend(source, backend_name))
-    problems.attempt(lambda: _check_localizer(source))
-    world = problems.attempt(lambda: _world(source, backend)) if backend else None
-    rig = problems.attempt(lambda: rig_from(source, ("rig",)))
+    backend = problems.attempt(_backend, source, backend_name)
+    problems.attempt(_check_localizer, source)
+    world = problems.attempt(_world, source, backend) if backend else None
+    rig = problems.attempt(rig_from, source, ("rig",))
     setting = _setting(source, backend_name)
-    faults = problems.attempt(lambda: fault_entries(source, ("faults",), setting))
+    faults = problems.attempt(fault_entries, source, ("faults",), setting)
     problems.found.extend(expect_problems(source, faults))
-    tree_path = problems.attempt(lambda: _tree_path(source))
-    tree = problems.attempt(lambda: load_tree(tree_path)) if tree_path else None
-    inputs = problems.attempt(lambda: _inputs(source, tree)) if tree else None
+    tree_path = problems.attempt(_tree_path, source)
+    tree = problems.attempt(load_tree, tree_path) if tree_path else None
+    inputs = problems.attempt(_inputs, source, tree) if tree else None
     if tree is not None:
         problems.found.extend(target_problems(source, faults or (), tree))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
         if backend is not None:
-            problems.attempt(lambda: _check_tier(source, file.tier, backend))
+            problems.attempt(_check_tier, source, file.tier, backend)
         if backend is not None and world is not None and not impossible:
             problems.found.extend(_world_problems(source, backend, world, file.mission))
     problems.check()
@@ -217,9 +217,7 @@ def _check_localizer(source: Source) -> None:
 
 def _backend(source: Source, name: str) -> BackendSpec:
     _check_known(source, "backend", plugins.BACKENDS, name)
-    spec = plugins.load(plugins.BACKENDS, name, BackendSpec)
-    assert isinstance(spec, BackendSpec)  # noqa: S101  (load has checked)
-    return spec
+    return plugins.load(plugins.BACKENDS, name, BackendSpec)
 
 
 def _world(source: Source, backend: BackendSpec) -> BaseModel:
@@ -262,7 +260,7 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
             problems.add(source.key_at((*place, name)).problem(message + guess(name, ports)))
         else:
             kind = ports[name].type
-            values[name] = problems.attempt(lambda n=name, k=kind: literal(source, (*place, n), k))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+            values[name] = problems.attempt(literal, source, (*place, name), kind)
     problems.check()
     return values
 

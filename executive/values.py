@@ -7,18 +7,18 @@ from typing import Generic, TypeVar
 
 from executive.types import Point, PoseEstimate, Quality, Segment
 
-T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 
 
 @dataclass(frozen=True)
-class ValueType(Generic[T]):
+class ValueType(Generic[T_co]):
     """A port type. `unit` is the SI unit of a dimensioned number (files must then carry a unit).
 
     `literal` says whether a file may give it as a literal; the rest flows between nodes only.
     """
 
     name: str
-    python: type[T]
+    python: type[T_co]
     unit: str | None = None
     literal: bool = True
 
@@ -39,7 +39,7 @@ SEGMENT = ValueType("Segment", Segment, literal=False)
 ROUTE: ValueType[tuple[Segment, ...]] = ValueType("Route", tuple, literal=False)
 
 VALUE_TYPES: dict[str, ValueType[object]] = {
-    t.name: t  # type: ignore[misc]  # one dict for every type
+    t.name: t
     for t in (
         LENGTH,
         ANGLE,

@@ -81,12 +81,11 @@ class SimTracks:
     def stop(self) -> None:
         """Stop both belts at once, as far as their motors do."""
         if self._drive is not None:
-            self._end_drive().end(Outcome(Reason.CANCELLED))
+            self._end(self._drive).end(Outcome(Reason.CANCELLED))
 
-    def _end_drive(self) -> DeviceAction[TrackReading]:
+    def _end(self, drive: _Drive) -> DeviceAction[TrackReading]:
         """Take the power off; what is left to do is to end the action."""
-        assert self._drive is not None  # noqa: S101
-        drive, self._drive = self._drive, None
+        self._drive = None
         self._forces_n = (0.0, 0.0)
         speeds = (m.speed_factor * v for m, v in zip(self.motors, drive.speeds_m_s, strict=True))
         self._run_on = [(v, m.runs_on_s) for m, v in zip(self.motors, speeds, strict=True)]
@@ -120,23 +119,23 @@ class SimTracks:
 
     def feel(self, forces_n: tuple[float, float], tick_s: float) -> None:
         """Take in the belt forces of the tick; end the drive if it is done or blocked for too long."""
-        if self._drive is None:
+        drive = self._drive
+        if drive is None:
             return
-        left_n, right_n = (self._pushes_n(side, forces_n[side]) for side in (0, 1))
+        left_n, right_n = (self._pushes_n(drive, side, forces_n[side]) for side in (0, 1))
         self._forces_n = (abs(left_n), abs(right_n))
         self._effort_n = abs(left_n + right_n) / 2
         self._over_s = self._over_s + tick_s if self._overcurrent else max(0.0, self._over_s - tick_s)
         if self._over_s >= LIMIT_LASTS_S:
-            self._finish(Reason.BLOCKED, "motor current over its limit")
-        elif all(abs(m) < 1e-9 for m in self._drive.remaining_m):
-            self._finish(Reason.DONE)
+            self._finish(drive, Reason.BLOCKED, "motor current over its limit")
+        elif all(abs(m) < 1e-9 for m in drive.remaining_m):
+            self._finish(drive, Reason.DONE)
 
-    def _pushes_n(self, side: int, force_n: float) -> float:
+    def _pushes_n(self, drive: _Drive, side: int, force_n: float) -> float:
         """What a motor pushes its belt with, positive the way it is driven."""
-        assert self._drive is not None  # noqa: S101
-        if self.motors[side].jammed and self._drive.remaining_m[side] != 0.0:
+        if self.motors[side].jammed and drive.remaining_m[side] != 0.0:
             return STALL_PER_WEIGHT * self._weight_n
-        return math.copysign(force_n, force_n * self._drive.speeds_m_s[side])
+        return math.copysign(force_n, force_n * drive.speeds_m_s[side])
 
     @property
     def _overcurrent(self) -> bool:
@@ -146,9 +145,9 @@ class SimTracks:
             or self._effort_n > LIMIT_PER_WEIGHT_BOTH * self._weight_n
         )
 
-    def _finish(self, reason: Reason, detail: str = "") -> None:
+    def _finish(self, drive: _Drive, reason: Reason, detail: str = "") -> None:
         last = replace(self._measure(IDLE_CURRENT_A), moving=False)
-        self._end_drive().end(Outcome(reason, detail, last))
+        self._end(drive).end(Outcome(reason, detail, last))
 
     def _now(self) -> TrackReading:
         return self._measure(IDLE_CURRENT_A if self.turning else 0.0)

@@ -147,10 +147,11 @@ class World:
         self._grip = self._gripping((left, right))
         soil = self.soils.at(float(position[0]), float(position[1]))
         efficiency = self.soils.yaw_efficiency(soil, float(position[0]), float(position[1]))
-        self._slips = tuple(  # type: ignore[assignment]  # two tracks make a pair
+        slip_left, slip_right = (
             1.0 - g.travel(b, load) / b if b != 0.0 else 0.0
             for g, b in zip((left, right), belts_m, strict=True)
         )
+        self._slips = slip_left, slip_right
         gauge_m = self.rig.rover.track_gauge_m
         return displacement(belts_m, (left, right), load, efficiency, gauge_m, self.side_drift)
 

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import dataclasses
 from functools import cache
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from types import GenericAlias
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel, create_model
 
@@ -15,6 +16,9 @@ from executive import units
 from executive.config.source import Place, Source
 from executive.config.validate import Strict, parse
 from executive.rig import RigCalibration
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 SUFFIXES = {
     "_rad_s": units.TURN_RATE,
@@ -36,11 +40,10 @@ def rig_from(source: Source, at: Place) -> RigCalibration:
     return rig
 
 
-def rig_fields(rig: object) -> dict[str, Any]:
+def rig_fields(rig: DataclassInstance) -> dict[str, Any]:
     """Every number of the rig as a file says it."""
     return {
-        _key(field.name): _written(getattr(rig, field.name), field.name)
-        for field in dataclasses.fields(rig)  # type: ignore[arg-type]  # always a dataclass
+        _key(field.name): _written(getattr(rig, field.name), field.name) for field in dataclasses.fields(rig)
     }
 
 
@@ -64,7 +67,7 @@ def _field_type(hint: Any, name: str) -> Any:
     if dataclasses.is_dataclass(hint) and isinstance(hint, type):
         return model_of(hint)
     if get_origin(hint) is tuple:
-        return tuple[tuple(_field_type(a, name) if a is not ... else a for a in get_args(hint))]  # type: ignore[misc]  # a type made at run time
+        return GenericAlias(tuple, tuple(_field_type(a, name) if a is not ... else a for a in get_args(hint)))
     if hint is float:
         suffix = next((s for s in SUFFIXES if name.endswith(s)), "")
         return Annotated[float, *units.of_kind(SUFFIXES[suffix])] if suffix else float
@@ -85,7 +88,7 @@ def _apply(default: Any, given: Any) -> Any:
 
 
 def _written(value: Any, name: str) -> Any:
-    if dataclasses.is_dataclass(value):
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return rig_fields(value)
     if isinstance(value, tuple):
         return [_written(part, name) for part in value]

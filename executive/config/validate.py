@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Annotated, Any, TypeVar, get_args, get_origin
+from typing import Annotated, Any, ParamSpec, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
@@ -15,6 +15,7 @@ from executive.errors import ConfigError, Problem
 
 M = TypeVar("M", bound=BaseModel)
 T = TypeVar("T")
+P = ParamSpec("P")
 
 
 class Strict(BaseModel):
@@ -32,10 +33,10 @@ class Problems:
     def add(self, problem: Problem) -> None:
         self.found.append(problem)
 
-    def attempt(self, part: Callable[[], T]) -> T | None:
-        """The part's result, or None after noting what was wrong with it."""
+    def attempt(self, part: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
+        """What the part makes of these arguments, or None after noting what was wrong with it."""
         try:
-            return part()
+            return part(*args, **kwargs)
         except ConfigError as error:
             self.found.extend(error.problems)
             return None

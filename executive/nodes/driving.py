@@ -31,7 +31,7 @@ class DrivingLeaf(ActionLeaf):
     """
 
     pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
-    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))
     tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
     tension_limit = In[float](FORCE, "stop at this pull; half of one at a snag may not be felt", default=4.0)
     sigmas = In[float](NUMBER, "standard deviations to keep from the off-track margin", default=2.0)

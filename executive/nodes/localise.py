@@ -15,7 +15,7 @@ class Localise(ActionLeaf):
 
     quality = In[Quality](QUALITY, "trend, precise or far", default=Quality.PRECISE)
     pose = InOut[PoseEstimate](POSE, "the pose, as measured and predicted")
-    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))
     budget = In[float](DURATION, "mission time it may take", default=900.0)
     position = In[float](LENGTH, "standard deviation wanted; 0: that of the quality", default=0.0)
     yaw = In[float](ANGLE, "standard deviation wanted; 0: that of the quality", default=0.0)

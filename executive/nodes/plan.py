@@ -101,7 +101,7 @@ class DeadReckon(Leaf):
     """Take the predicted pose for the pose."""
 
     pose = Out[PoseEstimate](POSE, "the pose, as predicted from the belts alone")
-    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))  # type: ignore[arg-type]  # unset where a tree has none
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))
 
     def step(self) -> Outcome[object]:
         self.pose = self.services.classification.predicted().on(self.segment)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
@@ -94,7 +94,7 @@ class FakeRobot:
     cabin_rad: float = 0.0
     pan_rad: float = 0.0
     tilt_rad: float = 0.0
-    under_way: list[TimedAction[object]] = field(default_factory=list)
+    under_way: list[TimedAction[Any]] = field(default_factory=list)
     driving: TimedAction[TrackReading] | None = None
 
     def tick(self) -> None:
@@ -103,7 +103,7 @@ class FakeRobot:
         self.under_way = [a for a in self.under_way if a.outcome is None]
 
     def start(self, action: TimedAction[T]) -> TimedAction[T]:
-        self.under_way.append(action)  # type: ignore[arg-type]  # the list never reads the value
+        self.under_way.append(action)
         return action
 
     def move(self, left_m: float, right_m: float) -> None:

@@ -37,7 +37,7 @@ class TreeFile(Strict):
 def declared_ports(source: Source, file: TreeFile) -> tuple[PortSpec, ...]:
     """The tree's ports; ConfigError for unknown types and defaults that do not fit them."""
     problems = Problems()
-    made = [problems.attempt(lambda n=n, d=d: _port(source, n, d)) for n, d in file.ports.items()]  # type: ignore[misc]  # mypy cannot infer bound lambdas
+    made = [problems.attempt(_port, source, n, d) for n, d in file.ports.items()]
     problems.check()
     return tuple(port for port in made if port is not None)
 

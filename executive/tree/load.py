@@ -53,7 +53,7 @@ def check_trees(sources: Mapping[str, Source], skipped: Container[str] = ()) -> 
     trees, problems = _Trees(node_types(), sources), Problems()
     for name in sources:
         if name not in skipped:
-            problems.attempt(lambda n=name: trees.load(Path(n), ()))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+            problems.attempt(trees.load, Path(name), ())
     return sorted(set(problems.found))
 
 
@@ -82,8 +82,8 @@ class _Trees:
 
     def read(self, source: Source, stack: tuple[Path, ...]) -> TreeSpec:
         problems = Problems()
-        file = problems.attempt(lambda: parse(source, TreeFile))
-        ports = problems.attempt(lambda: declared_ports(source, file)) if file else ()
+        file = problems.attempt(parse, source, TreeFile)
+        ports = problems.attempt(declared_ports, source, file) if file else ()
         reader = _TreeReader(self, source, stack, ports or (), problems)
         has_root = isinstance(source.data, dict) and source.data.get("root") is not None
         root = reader.node(("root",)) if has_root else None
@@ -119,7 +119,7 @@ class _TreeReader:
 
     def node(self, place: Place) -> NodeSpec | None:
         """The node at `place`, or None after noting what is wrong with it."""
-        return self.problems.attempt(lambda: self._node(place))
+        return self.problems.attempt(self._node, place)
 
     def _node(self, place: Place) -> NodeSpec:
         data = self.source.get(place)
@@ -152,7 +152,7 @@ class _TreeReader:
         tree: TreeSpec | None = None
         kind = self.trees.types.get(word)
         if kind is None:
-            tree = local.attempt(lambda: self._tree(word, mark))
+            tree = local.attempt(self._tree, word, mark)
             kind = NodeType(word, "tree", tree.doc, tree.ports) if tree else None
         ports: dict[str, PortValue] = {}
         children: list[NodeSpec] = []
@@ -231,7 +231,7 @@ class _TreeReader:
         values: dict[str, PortValue] = {}
         for name, port in known.items():
             if name in given:
-                value = local.attempt(lambda n=name, p=port: self._port((*place, n), kind, p))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+                value = local.attempt(self._port, (*place, name), kind, port)
                 if value is not None:
                     values[name] = value
             elif port.default is REQUIRED and (

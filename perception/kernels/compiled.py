@@ -36,9 +36,10 @@ class _Kept(FunctionCache):
     would go on calling what another file said before."""
 
     def __init__(self, function: Callable[..., object]) -> None:
-        super().__init__(function)  # type: ignore[no-untyped-call]
+        super().__init__(function)  # type: ignore[no-untyped-call]  # numba has no types
         stamp = _sources(Path(function.__code__.co_filename).parent)
-        self._cache_file = IndexDataCacheFile(self.cache_path, self._impl.filename_base, stamp)  # type: ignore[no-untyped-call]
+        base = self._impl.filename_base
+        self._cache_file = IndexDataCacheFile(self.cache_path, base, stamp)  # type: ignore[no-untyped-call]  # numba has no types
 
 
 @cache

@@ -96,7 +96,7 @@ def case_number(campaign: Campaign, number: int) -> Drawn:
     problems, cells = Problems(), campaign.cells
     values: dict[str, Source] = {
         **_fixed(campaign),
-        **(problems.attempt(lambda: _faults(campaign, seed)) or {}),
+        **(problems.attempt(_faults, campaign, seed) or {}),
         **_varied(campaign, seed, problems),
         **_cell(campaign, cells[draw % len(cells)]),
     }
@@ -168,10 +168,7 @@ def _fixed(campaign: Campaign) -> dict[str, Source]:
 
 
 def _varied(campaign: Campaign, seed: int, problems: Problems) -> dict[str, Source]:
-    drawn = {
-        key: problems.attempt(lambda key=key: draw_at(campaign, ("vary", key), seed))  # type: ignore[misc]  # mypy cannot infer bound lambdas
-        for key in campaign.file.vary
-    }
+    drawn = {key: problems.attempt(draw_at, campaign, ("vary", key), seed) for key in campaign.file.vary}
     return {key: value for key, value in drawn.items() if value is not None}
 
 

@@ -38,14 +38,14 @@ def load_campaign(path: Path) -> Campaign:
 def checked(source: Source) -> Campaign:
     """The same from data already read."""
     problems = Problems()
-    file = problems.attempt(lambda: parse(source, CampaignFile))
-    scenario = problems.attempt(lambda: _scenario(source))
+    file = problems.attempt(parse, source, CampaignFile)
+    scenario = problems.attempt(_scenario, source)
     problems.found.extend(problem for place in _keys(source) for problem in _of_key(source, place))
     if file is None or scenario is None:
         raise ConfigError(problems.found)
     campaign = Campaign(file, source, scenario)
     for case in _samples(campaign, problems):
-        problems.attempt(lambda case=case: resolved(campaign, case))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+        problems.attempt(resolved, campaign, case)
     problems.check()
     return campaign
 
@@ -85,7 +85,7 @@ def _of_key(source: Source, place: Place) -> Iterator[Problem]:
 
 def _samples(campaign: Campaign, problems: Problems) -> Iterator[Drawn]:
     """Cases that together hold every setting, every value of the grid, and every fault once."""
-    first = [problems.attempt(lambda n=n: case_number(campaign, n)) for n in range(len(campaign.settings))]  # type: ignore[misc]  # mypy cannot infer bound lambdas
+    first = [problems.attempt(case_number, campaign, n) for n in range(len(campaign.settings))]
     good = [case for case in first if case is not None]
     yield from good
     for base in good[:1]:

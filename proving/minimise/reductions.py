@@ -152,9 +152,7 @@ def _kind(entry: Data) -> str:
 
 
 def _spec(trier: Trier, index: int) -> FaultSpec:
-    spec = plugins.load(plugins.FAULTS, _kind(trier.best["faults"][index]), FaultSpec)
-    assert isinstance(spec, FaultSpec)  # noqa: S101  (load has checked)
-    return spec
+    return plugins.load(plugins.FAULTS, _kind(trier.best["faults"][index]), FaultSpec)
 
 
 def _name(trier: Trier, index: int) -> str:

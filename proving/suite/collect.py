@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,9 +39,9 @@ def collect(paths: Iterable[Path], seed: int | None = None, tier: str | None = N
     found: dict[Path, Collected | None] = {}
     for number, path in enumerate(paths, 1):
         mark = Mark("PATH", number, 1)
-        for file in problems.attempt(lambda path=path, mark=mark: list(_files(path, mark))) or ():  # type: ignore[misc]  # mypy cannot infer bound lambdas
+        for file in problems.attempt(_files, path, mark) or ():
             if file.resolve() not in found:
-                found[file.resolve()] = problems.attempt(lambda file=file: one(file, seed, tier))  # type: ignore[misc]  # mypy cannot infer bound lambdas
+                found[file.resolve()] = problems.attempt(one, file, seed, tier)
     problems.check()
     return [each for each in found.values() if each is not None]
 
@@ -62,13 +62,10 @@ def says_scenario(file: Path) -> bool:
         return False
 
 
-def _files(path: Path, mark: Mark) -> Iterator[Path]:
+def _files(path: Path, mark: Mark) -> list[Path]:
     if path.is_dir():
         files = [file for file in sorted(path.rglob("*")) if says_scenario(file)]
         if not files:
             raise ConfigError([mark.problem(f'got "{path}", expected a folder with scenario files in it')])
-        yield from files
-    elif path.is_file():
-        yield path
-    else:
-        yield Path(shown(find("scenarios", str(path), Path(), mark)))
+        return files
+    return [path if path.is_file() else Path(shown(find("scenarios", str(path), Path(), mark)))]

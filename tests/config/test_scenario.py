@@ -103,7 +103,7 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
         'scenarios/dark.yaml:11:19: got "reachd", expected reached, safe_hold, help, time_limit or error; '
         'did you mean "reached"?',
         "scenarios/dark.yaml:11:35: got an angle, expected something true or false",
-        'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, mission, seed, tier, '  # noqa: E501
+        'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, mission, seed, tier, '  # noqa: E501  (as it is printed)
         'backend, localizer, world, rig, faults, expect, expected_to_fail or ...; did you mean "time_limit"?',
     ]
 
@@ -112,16 +112,16 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
     ("old", "new", "problem"),
     [
         ("{x: 3.2 m, y: 0.1 m}", "{x: 32 m, y: 0.1 m}",
-         "missions/short.yaml:6:5: got an unreachable way-point, 32.00 m from the lander, expected 1.2 m to 20 m"),  # noqa: E501
+         "missions/short.yaml:6:5: got an unreachable way-point, 32.00 m from the lander, expected 1.2 m to 20 m"),  # noqa: E501  (as it is printed)
         ("{x: 3.2 m, y: 0.1 m}", "{x: 0.3 m, y: 0.1 m}",
-         "missions/short.yaml:6:5: got an unreachable way-point, 0.32 m from the lander, expected 1.2 m to 20 m"),  # noqa: E501
+         "missions/short.yaml:6:5: got an unreachable way-point, 0.32 m from the lander, expected 1.2 m to 20 m"),  # noqa: E501  (as it is printed)
         ("{x: 3.2 m, y: 0.1 m}", "{x: 2.6 m, y: -400 mm}",
          "missions/short.yaml:6:5: got the same place as way-point 0, expected a segment with a length"),
         ("on_track: 30 mm", "on_track: 300 mm",
-         "missions/short.yaml:3:22: got on_track 0.3 m with off_track 0.25 m, expected on_track to be less than "  # noqa: E501
+         "missions/short.yaml:3:22: got on_track 0.3 m with off_track 0.25 m, expected on_track to be less than "  # noqa: E501  (as it is printed)
          "off_track"),
         ("tolerance: 20 mm", "tolerance: 260 mm",
-         "missions/short.yaml:7:37: got tolerance 0.26 m with off_track 0.25 m, expected tolerance to be at most "  # noqa: E501
+         "missions/short.yaml:7:37: got tolerance 0.26 m with off_track 0.25 m, expected tolerance to be at most "  # noqa: E501  (as it is printed)
          "off_track"),
         ("tree: go", "tree: goo",
          'missions/short.yaml:2:7: got "goo", expected a file or a name in trees/; did you mean "go"?'),
@@ -186,9 +186,9 @@ def test_a_fault_starts_in_exactly_one_way(folder, trigger, message):
         ("{progress: 40 %}", "{strategy: back_of}",
          'scenarios/dark.yaml:8:22: got the unknown strategy "back_of", expected back_off'),
         ("lamp_off: {", "led_off: {",
-         "scenarios/dark.yaml:7:5: got led_off with the backend plain, which it cannot act in; expected pybullet"),  # noqa: E501
+         "scenarios/dark.yaml:7:5: got led_off with the backend plain, which it cannot act in; expected pybullet"),  # noqa: E501  (as it is printed)
         ("lamp_off: {", "daylight: {",
-         "scenarios/dark.yaml:9:5: got a duration of daylight, which cannot be taken back; expected no `for`"),  # noqa: E501
+         "scenarios/dark.yaml:9:5: got a duration of daylight, which cannot be taken back; expected no `for`"),  # noqa: E501  (as it is printed)
     ],
 )  # fmt: skip
 def test_a_fault_that_cannot_act_is_refused_where_it_says_so(folder, old, new, problem):
@@ -278,7 +278,7 @@ def test_inputs_of_the_tree_are_checked_against_its_ports(folder):
     rewritten(folder, "{pause: 2 min}", "{pause: 2 m, puse: 1 s}", "missions/short.yaml")
     assert problems_of(path) == [
         "missions/short.yaml:3:22: got '2 m' (a length), expected a duration such as '36 s'",
-        'missions/short.yaml:3:27: got the unknown input "puse" of go, expected route or pause; did you mean "pause"?',  # noqa: E501
+        'missions/short.yaml:3:27: got the unknown input "puse" of go, expected route or pause; did you mean "pause"?',  # noqa: E501  (as it is printed)
     ]
 
 

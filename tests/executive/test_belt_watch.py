@@ -29,7 +29,10 @@ def test_a_drive_as_planned_has_no_problem():
 @pytest.mark.parametrize("sign", [1, -1])
 def test_turning_and_backing_have_none_either(sign):
     belts = Belts(-0.1 * sign, 0.05 * sign)
-    counted = lambda t: (-sign * straight(t), sign * straight(t) / 2)  # noqa: E731
+
+    def counted(t):
+        return -sign * straight(t), sign * straight(t) / 2
+
     assert first_problem(belts, counted, until_s=110) is None
 
 

@@ -130,11 +130,11 @@ def sees(reason: Reason) -> Setup:
 
 
 def tilted(bench: Bench) -> None:
-    bench.backend.devices.inclinometer.read = lambda: TiltReading(bench.backend.clock.now_s, 0.6, 0.0)  # type: ignore[method-assign]
+    bench.backend.devices.inclinometer.read = lambda: TiltReading(bench.backend.clock.now_s, 0.6, 0.0)
 
 
 def held_back(bench: Bench) -> None:
-    bench.backend.devices.tether.read = lambda: TetherReading(bench.backend.clock.now_s, 5.0, 6.0)  # type: ignore[method-assign]
+    bench.backend.devices.tether.read = lambda: TetherReading(bench.backend.clock.now_s, 5.0, 6.0)
 
 
 def believed_at(y_m: float, heading_rad: float = 0.0) -> Setup:

@@ -19,7 +19,7 @@ SEGMENT = Segment(Point(0.0, 0.0), Point(1.0, 0.0), on_track_m=0.03, off_track_m
 def strategy(name: str, answers: dict[Hypothesis, float], **more: object) -> Strategy:
     return replace(
         Strategy(name, f"{name}.", Path(f"{name}.yaml"), answers, reasons={}, cost_s=60.0),
-        **more,  # type: ignore[arg-type]
+        **more,
     )
 
 

@@ -155,7 +155,7 @@ class Story:
         pose = PoseEstimate(
             r.time,
             (float(position[0]), float(position[1]), float(position[2])),
-            tuple(float(q) for q in rotation.as_quat()),  # type: ignore[arg-type]
+            tuple(float(q) for q in rotation.as_quat()),
             np.diag(sigma**2),
             Source.MARKERS,
             markers=4,

@@ -22,7 +22,7 @@ SHOT = Shot((0, 1, 2, 4, 8), (Window(448, 448, 128, 128),) * 2, 0.5)
 
 
 def request(tier: str, truth: Path | None = None, **world: object) -> BackendRequest:
-    config = WorldConfig.model_validate(plain(**world))  # type: ignore[arg-type]
+    config = WorldConfig.model_validate(plain(**world))
     return BackendRequest(config, AHEAD, 3, tier, RigCalibration(), truth, 1.0)
 
 

@@ -113,7 +113,7 @@ class Diary:
             self.strike(leaf, "halt", self.halted)
             halt()
 
-        leaf.begin, leaf.step, leaf.halt = counted_begin, counted_step, counted_halt  # type: ignore[method-assign]
+        leaf.begin, leaf.step, leaf.halt = counted_begin, counted_step, counted_halt
 
     def strike(self, leaf: Leaf, method: str, counts: Counter[str]) -> None:
         call = Sabotage(leaf.path, method, counts[leaf.path])
@@ -246,6 +246,6 @@ def run(
         moving_at_stop.append(backend.devices.tracks.read().moving)
         stop()
 
-    backend.safe_stop = noted_stop  # type: ignore[method-assign]
+    backend.safe_stop = noted_stop
     end = execute(alter(prepared) or prepared)
     return Ended(end, diary, built, backend, folder / "record.mcap", not any(moving_at_stop))

@@ -152,9 +152,9 @@ def test_a_strategy_whose_needs_raise_is_named(tmp_path: Path) -> None:
     def alter(made: Run) -> Run:
         pool = Pool(
             [replace(s, needs=needs) for s in made.services.pool.strategies.values()],
-            made.services.journal.strategy,  # type: ignore[attr-defined]
+            made.services.journal.strategy,
         )
-        made.services.pool.choose = pool.choose  # type: ignore[method-assign]
+        made.services.pool.choose = pool.choose
         return made
 
     ended = run(Setting(blind_every=1), tmp_path, alter=alter)
@@ -215,7 +215,7 @@ def test_an_interrupt_while_coming_to_rest_does_not_keep_it_from_resting(tmp_pat
                 raise KeyboardInterrupt
             advance()
 
-        made.backend.advance = interrupted  # type: ignore[method-assign]
+        made.backend.advance = interrupted
         break_in(made.trace, "terminate_entered", 0, KeyboardInterrupt())
 
     ended = run(Setting(), tmp_path, alter=alter)

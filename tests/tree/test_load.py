@@ -14,22 +14,22 @@ def in_tree(root, ports="{}"):
 @pytest.mark.parametrize(
     ("root", "problem"),
     [
-        ("{wiat: {duration: 3 s}}", 't.yaml:3:8: got the unknown node "wiat", expected a node or a tree; did you mean "wait"?'),  # noqa: E501
-        ("{wait: {durtion: 3 s, duration: 1 s}}", 't.yaml:3:15: got the unknown port "durtion" of wait, expected duration; did you mean "duration"?'),  # noqa: E501
+        ("{wiat: {duration: 3 s}}", 't.yaml:3:8: got the unknown node "wiat", expected a node or a tree; did you mean "wait"?'),  # noqa: E501  (as it is printed)
+        ("{wait: {durtion: 3 s, duration: 1 s}}", 't.yaml:3:15: got the unknown port "durtion" of wait, expected duration; did you mean "duration"?'),  # noqa: E501  (as it is printed)
         ("{wait: {}}", 't.yaml:3:8: got no "duration" for wait, expected how long to wait (duration)'),
         ("{wait: {duration: 3}}", "t.yaml:3:25: got 3 without a unit, expected a duration such as '36 s'"),
         ("{wait: {duration: 3 m}}", "t.yaml:3:25: got '3 m' (a length), expected a duration such as '36 s'"),
         ("{act: {ticks: 1.5}}", "t.yaml:3:21: got 1.5, expected a whole number"),
-        ("{measure: {value: 3 m}}", 't.yaml:3:25: got "3 m" for a port that is written, expected a reference such as {value}'),  # noqa: E501
+        ("{measure: {value: 3 m}}", 't.yaml:3:25: got "3 m" for a port that is written, expected a reference such as {value}'),  # noqa: E501  (as it is printed)
         ("{visit: {target: 3 m}}", 't.yaml:3:24: got "3 m", expected a reference to a Point such as {x}'),
-        ("{note: {value: '{depth}'}}", "t.yaml:3:22: got {depth}, which is neither a port of this tree nor written in it, expected one that is"),  # noqa: E501
+        ("{note: {value: '{depth}'}}", "t.yaml:3:22: got {depth}, which is neither a port of this tree nor written in it, expected one that is"),  # noqa: E501  (as it is printed)
         ("{sequence: []}", "t.yaml:3:18: got a list of 0 as children of sequence, expected a list of nodes"),
         ("{inverter: {}}", "t.yaml:3:8: got no child for inverter, expected exactly one"),
         ("{retry: {attempts: 2}}", "t.yaml:3:8: got no child for retry, expected exactly one"),
         ("{retry: {attempts: 0, child: act}}", "t.yaml:3:26: got 0, expected 1 or more"),
         ("{parallel: {policy: any, children: [act]}}", 't.yaml:3:27: got "any", expected all or one'),
-        ("{act: {}, wait: {duration: 1 s}}", "t.yaml:3:7: got act or wait, expected exactly one node type beside name, skip_if, while, success_if or failure_if"),  # noqa: E501
-        ("{act: {}, skipif: 'true'}", 't.yaml:3:7: got act or skipif, expected exactly one node type beside name, skip_if, while, success_if or failure_if; did you mean "skip_if"?'),  # noqa: E501
+        ("{act: {}, wait: {duration: 1 s}}", "t.yaml:3:7: got act or wait, expected exactly one node type beside name, skip_if, while, success_if or failure_if"),  # noqa: E501  (as it is printed)
+        ("{act: {}, skipif: 'true'}", 't.yaml:3:7: got act or skipif, expected exactly one node type beside name, skip_if, while, success_if or failure_if; did you mean "skip_if"?'),  # noqa: E501  (as it is printed)
         ("3", "t.yaml:3:7: got 3, expected a node such as {wait: {duration: 5 s}}"),
     ],
 )  # fmt: skip
@@ -158,7 +158,7 @@ nodes = st.recursive(
         st.lists(inner, max_size=3),
         st.dictionaries(
             st.sampled_from(
-                ["sequence", "wait", "retry", "for_each", "timeout", "child", "children", "attempts", "in", "as",  # noqa: E501
+                ["sequence", "wait", "retry", "for_each", "timeout", "child", "children", "attempts", "in", "as",  # noqa: E501  (as it is printed)
                  "duration", "after", "skip_if", "while", "name", "recover", "memory"]
             ),
             inner,
