@@ -9,6 +9,8 @@ import numpy as np
 
 from executive.types import Array, Segment, Vec2
 
+_LABEL_PX = 40.0
+
 
 @dataclass(frozen=True)
 class MapFrame:
@@ -24,9 +26,17 @@ class MapFrame:
 
     @classmethod
     def around(cls, xy_m: Array, width_px: float, pad_m: float, heights_px: Vec2) -> MapFrame:
-        """The frame that holds all points (n, 2) with a border, of this width, its height within limits."""
+        """The frame that holds all points (n, 2) with a border, of this width, its height within limits.
+
+        The border is `pad_m` wide, or wide enough for a label where that is little on paper.
+        """
         low, high = xy_m.min(axis=0) - pad_m, xy_m.max(axis=0) + pad_m
-        scale = min(width_px / (high[0] - low[0]), heights_px[1] / (high[1] - low[1]))
+        size_px = np.array([width_px, heights_px[1]])
+        scale = float((size_px / (high - low)).min())
+        if pad_m * scale < _LABEL_PX:
+            low, high = low + pad_m, high - pad_m
+            scale = float(((size_px - 2 * _LABEL_PX) / np.maximum(high - low, 1e-9)).min())
+            low, high = low - _LABEL_PX / scale, high + _LABEL_PX / scale
         middle = (low + high) / 2
         half_x = width_px / scale / 2
         half_y = max(high[1] - low[1], heights_px[0] / scale) / 2

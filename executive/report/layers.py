@@ -174,9 +174,14 @@ def rover(
     )
 
 
+def bar_length_m(frame: MapFrame) -> float:
+    """A round length, a fifth of the width or so."""
+    return ticks(0.0, (frame.x1_m - frame.x0_m) / 4, 2)[-1]
+
+
 def scale_bar(frame: MapFrame, x_px: float, y_px: float) -> str:
-    """A bar of a round length, a fifth of the width or so, with its length over it."""
-    length = ticks(0.0, (frame.x1_m - frame.x0_m) / 4, 2)[-1]
+    """A bar from x on, with its length over it."""
+    length = bar_length_m(frame)
     long_px = length * frame.px_per_m
     words = f"{length:g} m" if length >= 0.2 else f"{length * 1000:g} mm"
     back = svg.element(

@@ -28,6 +28,7 @@ def overview(run: Run) -> Figure | None:
     frame = MapFrame.around(np.array([*xy, (0.0, 0.0)]), _WIDTH - _LEFT, 0.22, (300.0, 660.0))
     frame = MapFrame(frame.x0_m, frame.y0_m, frame.x1_m, frame.y1_m, frame.px_per_m, _LEFT, 4.0)
     factor = layers.exaggeration(run, frame)
+    bar_x = _LEFT + frame.width_px - layers.bar_length_m(frame) * frame.px_per_m - 26
     clip = svg.element(
         "clipPath",
         svg.element("rect", x=_LEFT, y=4, width=frame.width_px, height=frame.height_px),
@@ -45,7 +46,7 @@ def overview(run: Run) -> Figure | None:
         _waypoints(run, frame),
         _strategies(run, frame),
         _lander(frame),
-        layers.scale_bar(frame, _LEFT + frame.width_px - frame.px_per_m * 0.5 - 120, frame.height_px - 16),
+        layers.scale_bar(frame, bar_x, frame.height_px - 16),
     ]
     body = [
         svg.element("defs", clip),

@@ -245,3 +245,11 @@ def test_scenario_is_taken_from_the_record_where_its_file_is_gone(run_copy):
     page = write_report(run_copy).read_text()
     assert "the copy in the record is shown" in page
     assert "scenario: synthetic_traverse" in page
+
+
+def test_a_long_map_leaves_room_for_labels_at_its_ends():
+    long = MapFrame.around(np.array([[0.0, 0.0], [20.0, 0.0]]), 1000.0, 0.2, (300.0, 600.0))
+    assert long.x(0.0) == pytest.approx(40.0)
+    assert long.x(20.0) == pytest.approx(960.0)
+    short = MapFrame.around(np.array([[0.0, 0.0], [2.0, 0.4]]), 1000.0, 0.2, (300.0, 600.0))
+    assert short.x(0.0) == pytest.approx(0.2 * short.px_per_m)
