@@ -18,8 +18,9 @@ import cv2
 import numpy as np
 
 from executive.types import HeadReading, Shot
+from perception.choice import Choice
 from perception.look import look_at
-from perception.plausibility import Choice, choose
+from perception.plausibility import choose
 from perception.pose import roll_pitch
 from sim_pybullet.geometric import CentreDeveloper
 from sim_pybullet.leds import MarkerOptics

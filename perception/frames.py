@@ -16,10 +16,7 @@ from executive.types import Centres, Images, Window
 
 _MOST_SATURATED = 0.1  # share of pixels; they do not tell their noise, which is taken from all of them
 _MOST_LOST = 0.5  # share of frames
-_BLACK_COUNTS, _DAY_COUNTS = (
-    4.0,
-    20.0,
-)  # medians: what a dead camera shows at most, a live one by day at least
+_BLACK_COUNTS, _DAY_COUNTS = 4.0, 20.0  # medians: what a dead camera shows at most, one by day at least
 
 
 def check_frames(images: Images, sensor: SensorCalibration) -> None:

@@ -22,15 +22,13 @@ from perception.chain import Chain, ChainState
 from perception.choice import JointFix, Rejection, faces_cameras, noted
 from perception.difference import Difference
 from perception.identity import exchanges
-from perception.joint_search import JointScene, alike, relative_gain, sighting_without_centres
+from perception.joint_search import JointScene, alike, sighting_without_centres
 from perception.likelihood import Evidence, Likely, most_likely
 from perception.pose import Fix, Readings, chi2_limit
 from perception.posterior import posterior
 from perception.prediction import Expectation
 from perception.psf import Spread
 from perception.rotation import log_map
-
-__all__ = ["FALSE_ALARM_RATE", "JointFix", "joint_fix", "relative_gain"]
 
 # Of the whole region: a third of the 1e-3 that is claimed. The threshold keeps its theory's leading term only
 # and on 1200 regions of white noise 1.0 to 2.7 times as many climbed as high as it says.

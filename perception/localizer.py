@@ -29,14 +29,13 @@ from executive.types import View as Seen
 from perception.aim import Aim
 from perception.chain import Chain
 from perception.checked_cameras import CheckedCameras
+from perception.choice import Choice, JointFix, Rejection
 from perception.empty_views import EmptyViews
 from perception.exposure import View, view_of
 from perception.head_watch import HeadWatch, surprising
-from perception.joint import JointFix
 from perception.ladder import FULL_FRAMES, LADDER
 from perception.localisation import Localisation, empty
 from perception.outlines import Found, Outlines
-from perception.plausibility import Choice, Rejection
 from perception.pose import Fix
 from perception.prediction import Expectation
 from perception.rotation import quat_from_matrix

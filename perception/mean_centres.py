@@ -10,8 +10,7 @@ import numpy as np
 from executive.types import Array, Centres, Vec2
 from perception.body import Transform
 from perception.chain import Chain
-from perception.joint import JointFix
-from perception.plausibility import Rejection, faces_cameras
+from perception.choice import JointFix, Rejection, faces_cameras
 from perception.pose import Sighting, chi2_limit, estimate
 from perception.prediction import Expectation
 from perception.rotation import rot_z

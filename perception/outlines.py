@@ -18,11 +18,12 @@ from executive.types import Array, Centres, Images, PoseEstimate, Shot, Source
 from perception.aim import Aim
 from perception.body import Transform
 from perception.chain import Chain
+from perception.choice import Rejection
 from perception.empty_views import REACH_M, EmptyView, EmptyViews
-from perception.frames import check_frames, saturation
+from perception.frames import saturation
 from perception.look import look_at
 from perception.passive import Ground, PassiveFix, PassiveRefusal, Sun, passive_fix
-from perception.plausibility import Rejection, choose
+from perception.plausibility import choose
 from perception.prediction import Expectation
 from perception.rotation import quat_from_matrix
 from perception.routine import Steps, wait_for
@@ -100,7 +101,6 @@ class Outlines:
 
     def _from_images(self, data: Images, view: EmptyView, expectation: Expectation) -> _Body | str:
         sensor = self._chain.rig.sensor
-        check_frames(data, sensor)
         for name, counts in zip(("left", "right"), data.counts, strict=True):
             if problem := saturation(counts, sensor) or compare(counts, sensor.noise_counts).problem:
                 return f"{name} camera: {problem}"

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from executive.types import Centres, Images, Vec2, Window
 from perception.chain import Chain
-from perception.choice import Rejection, noted
+from perception.choice import JointFix, Rejection, noted
 from perception.exposure import view_of
 from perception.frames import blackness, check_frames, saturation
-from perception.joint import JointFix, joint_fix
+from perception.joint import joint_fix
 from perception.mean_centres import MeanCentres, fix_from_centres
 from perception.prediction import Expectation
 from perception.psf import marker_spread

@@ -34,8 +34,6 @@ from perception.pose import Prior, Sighting, chi2_limit, estimate, guess_body
 from perception.prediction import Expectation
 from perception.rotation import nearest_rotation, rot_x, rot_y, rot_z
 
-__all__ = ["Candidates", "Choice", "Rejection", "choose", "faces_cameras"]
-
 _GATE = 0.999
 _WIDE_GATE_SIGMAS = 4.0  # for the quick tests that only prune
 _BRIGHTNESS_RATIO = 2.5  # between the two cameras, which see a marker from almost the same side

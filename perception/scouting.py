@@ -13,7 +13,7 @@ from perception.aim import Aim
 from perception.chain import Chain
 from perception.empty_views import EmptyView, EmptyViews
 from perception.follow_up import pointing_at
-from perception.frames import check_frames, overexposed
+from perception.frames import overexposed
 from perception.routine import Steps, wait_for
 
 FRAMES = 8
@@ -79,8 +79,6 @@ class Scout:
         if taken.value is None or not taken.ok:
             return None
         data, sensor = taken.value, self._chain.rig.sensor
-        if isinstance(data, Images):
-            check_frames(data, sensor)
         if overexposed(data, sensor):
             return None
         view = self._would_be((data.head.pan_rad, data.head.tilt_rad), rover)

@@ -16,17 +16,16 @@ from executive.ports import Devices, LocaliseRequest
 from executive.rig import RigCalibration
 from executive.types import Array, Centres, Images, Outcome, Quality, Shot, Window
 from perception.chain import Chain
-from perception.choice import noted
+from perception.choice import Choice, JointFix, Rejection, noted
 from perception.codes import coded_sequence
 from perception.difference import led_sequence
 from perception.effort import joint_pairs, more_pairs, seen_singly, wanted_by
 from perception.exposure import filter_snr_per_pair, pairs_needed, view_of
 from perception.frames import overexposed
-from perception.joint import JointFix
 from perception.look import look_at
 from perception.metering import Metering
 from perception.pile import Pile
-from perception.plausibility import Choice, Rejection, choose
+from perception.plausibility import choose
 from perception.prediction import Expectation
 from perception.psf import marker_spread
 from perception.roi import full_windows, predicted_windows

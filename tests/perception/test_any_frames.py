@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 
 from executive.rig import RigCalibration
 from executive.types import HeadReading, Images, Shot, Window
+from perception.choice import Choice, JointFix, Rejection
 from perception.codes import coded_sequence
 from perception.difference import led_sequence
-from perception.joint import JointFix
 from perception.look import look_at
 from perception.moving_rover import moving_rover
 from perception.pile import Pile
-from perception.plausibility import Choice, Rejection, choose
+from perception.plausibility import choose
 from tests.perception.far_trials import draw, windows_of
 
 RIG = RigCalibration()

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from perception.choice import Choice, Rejection
 from perception.markers import Detection
-from perception.plausibility import Choice, Rejection, choose
+from perception.plausibility import choose
 from perception.pose import Prior, roll_pitch
 from perception.rotation import log_map
 from tests.perception.synthetic import scene

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from perception.chain import ChainState
+from perception.choice import Choice
 from perception.difference import difference, led_sequence, pair_weights
 from perception.fisher import centre_bound, pose_bound
 from perception.markers import find_markers
-from perception.plausibility import Choice, choose
+from perception.plausibility import choose
 from perception.pose import roll_pitch
 from perception.psf import marker_spread
 from perception.rotation import log_map
