@@ -22,7 +22,7 @@ from perception.chain import Chain, ChainState
 from perception.choice import JointFix, Rejection, faces_cameras, noted
 from perception.difference import Difference
 from perception.identity import exchanges
-from perception.joint_search import JointScene, alike, sighting_without_centres
+from perception.joint_search import JointScene, Searchable, alike, sighting_without_centres
 from perception.likelihood import Evidence, Likely, most_likely
 from perception.pose import Fix, Readings, chi2_limit
 from perception.posterior import posterior
@@ -67,15 +67,16 @@ def joint_fix(
     images = [_nothing(len(chain.markers_plc_m)) if one is None else one for one in cameras]
     readings = Readings.of(chain, sighting_without_centres(chain, expectation, tilt_rad), expectation.surface)
     scene = JointScene(chain, corners_px, spread, expectation, readings, widen, seeing)
-    found = _find(scene, images)
+    shown = scene.prepared(images)
+    found = _find(scene, shown)
     if isinstance(found, Rejection):
         return found
-    if found.bright.all() and found.best.snr > _AS_EXPECTED * scene.expected_snr(images):
+    if found.bright.all() and found.best.snr > _AS_EXPECTED * scene.expected_snr(shown):
         return _gated(scene, found)
-    swapped, said = _exchanged(scene, images, found)
+    swapped, said = _exchanged(scene, shown, found)
     if swapped is not None:
         return noted(_gated(scene, swapped), said)
-    lack = _too_few(scene, images, found) or _otherwise(scene, images, found)
+    lack = _too_few(scene, shown, found) or _otherwise(scene, shown, found)
     return Rejection(lack, found.shining) if lack else _gated(scene, found)
 
 
@@ -88,7 +89,6 @@ class _Found:
     shared: bool
     lead: float
     threshold: float
-    volume: float
     evidence: Evidence
 
     @property
@@ -103,10 +103,10 @@ class _Found:
         return bright
 
 
-def _find(scene: JointScene, images: Sequence[Difference]) -> _Found | Rejection:
+def _find(scene: JointScene, images: Searchable) -> _Found | Rejection:
     """The pose that the images show most clearly, if more clearly than noise would."""
-    likely, volume = scene.climbed(images)
-    threshold = scene.threshold(volume, FALSE_ALARM_RATE)
+    likely = scene.climbed(images)
+    threshold = scene.threshold(FALSE_ALARM_RATE)
     if len(scene.seeing) < 2:
         threshold = max(threshold, _LEAST_SNR_ALONE)
     shown = [one for one in likely if one.snr >= threshold]
@@ -116,12 +116,11 @@ def _find(scene: JointScene, images: Sequence[Difference]) -> _Found | Rejection
     nearest = max(shown, key=lambda one: _worth(scene.expectation, one))
     rivals = [_worth(scene.expectation, one) for one in likely if one is not nearest]
     lead = _worth(scene.expectation, nearest) - max(rivals, default=-math.inf)
-    evidence = scene.evidence(images)
-    best, shared = _with_own_fluxes(scene.chain, evidence, scene.readings, nearest)
-    return _Found(best, shared, lead, threshold, volume, evidence)
+    best, shared = _with_own_fluxes(scene.chain, images.evidence, scene.readings, nearest)
+    return _Found(best, shared, lead, threshold, images.evidence)
 
 
-def _exchanged(scene: JointScene, images: Sequence[Difference], found: _Found) -> tuple[_Found | None, str]:
+def _exchanged(scene: JointScene, images: Searchable, found: _Found) -> tuple[_Found | None, str]:
     """A pose at which all markers shine once one or two couples of LEDs are exchanged, if that explains the
     images better, and which couples these are."""
     better: tuple[_Found | None, str] = None, ""
@@ -132,13 +131,13 @@ def _exchanged(scene: JointScene, images: Sequence[Difference], found: _Found) -
         moved = [(m, at) for m, at in enumerate(order) if m != at]
         if any(sure[m] and sure[at] for m, at in moved):
             continue
-        other = _find(scene, [replace(i, images=i.images[order], sigma=i.sigma[order]) for i in images])
+        other = _find(scene, images.exchanged(order))
         if isinstance(other, _Found) and other.bright.all() and other.best.snr**2 > least:
             better, least = (other, said), other.best.snr**2
     return better
 
 
-def _too_few(scene: JointScene, images: Sequence[Difference], found: _Found) -> str:
+def _too_few(scene: JointScene, images: Searchable, found: _Found) -> str:
     """Why the markers that shine at the best pose are too few for it; empty if they are not.
 
     Any two of a plate whose LEDs are mixed up fit a rover that stands elsewhere, and a third may seem to glow
@@ -151,21 +150,21 @@ def _too_few(scene: JointScene, images: Sequence[Difference], found: _Found) -> 
         return ""
     if bright.sum() < _LEAST_MARKERS or len(scene.seeing) < 2:
         return said
-    noise = scene.threshold(found.volume, _NOISE_RATE)
+    noise = scene.threshold(_NOISE_RATE)
     if best.snr < noise + _SURE:
         return f"{said}, joint SNR {best.snr:.1f}, {noise + _SURE:.1f} needed for so few"
-    others, _ = scene.climbed([_only(one, ~bright) for one in images])
+    others = scene.climbed(images, ~bright)
     elsewhere = any(one.snr > noise and not alike(scene.chain, one, best) for one in others)
     return f"{said}, and the others elsewhere" if elsewhere else ""
 
 
-def _otherwise(scene: JointScene, images: Sequence[Difference], found: _Found) -> str:
+def _otherwise(scene: JointScene, images: Searchable, found: _Found) -> str:
     """Where else a rover with one or two LEDs dark explains the images about as well; empty if nowhere."""
     worth, everyone = _worth(scene.expectation, found.best), range(len(found.bright))
     for count in range(_LEAST_MARKERS, len(found.bright)):
         for shining in itertools.combinations(everyone, count):
             mask = np.isin(everyone, shining)
-            for one in scene.climbed([_only(image, mask) for image in images])[0]:
+            for one in scene.climbed(images, mask):
                 lead = worth - _worth(scene.expectation, one)
                 if lead < _DARK_RIVAL and _contradict(found.best, one):
                     said = f"one with {count} of {len(mask)} markers, {lead:.1f} apart in log likelihood"
@@ -185,12 +184,6 @@ def _nothing(markers: int) -> Difference:
     """What a blind camera says."""
     blank = np.zeros((markers, 1, 1), np.float32)
     return Difference(blank, np.full_like(blank, np.inf), blank[0], 0)
-
-
-def _only(images: Difference, markers: NDArray[np.bool_]) -> Difference:
-    """The images of some markers, nothing of the others."""
-    sigma = np.where(markers[:, None, None], images.sigma, np.float32(np.inf))
-    return replace(images, images=images.images * markers[:, None, None], sigma=sigma)
 
 
 def _with_own_fluxes(

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from executive.types import Array, Vec2
 from perception.chain import Chain, ChainState
@@ -18,12 +20,27 @@ from perception.markers import filter_snr
 from perception.pose import Readings, Sighting
 from perception.prediction import Expectation
 from perception.psf import Spread
-from perception.search import REGION_SIGMAS, FilterImages, Hypothesis, search
+from perception.search import REGION_SIGMAS, FilterImages, Lattice
 
 _STARTS = 12
 _COARSE_LOSS = 3.0  # of joint SNR: more than the lattice can cost the best pose over another
 _APART_PX = 1.0  # poses whose markers are farther apart than this are different explanations
 _PLACE_AND_HEADING = 3  # directions of the region searched
+
+
+@dataclass(frozen=True, eq=False)
+class Searchable:
+    """Difference images made ready: matched-filter SNR, evidence, and the flux [counts] of a marker whose
+    filter SNR is 1."""
+
+    filtered: tuple[FilterImages, FilterImages]
+    evidence: Evidence
+    flux_unit: float
+
+    def exchanged(self, order: Sequence[int]) -> Searchable:
+        """The same if each marker were on the line of the LED that stands in its place."""
+        left, right = (replace(one, snr=one.snr[order]) for one in self.filtered)
+        return replace(self, filtered=(left, right), evidence=self.evidence.exchanged(order))
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,23 +55,41 @@ class JointScene:
     widen: float
     seeing: Sequence[int]
 
-    def evidence(self, images: Sequence[Difference]) -> Evidence:
-        gain = relative_gain(self.chain, self.expectation.state)
-        return Evidence.of(images, self.corners_px, self.spread, gain)
+    @cached_property
+    def _lattice(self) -> Lattice:
+        return Lattice.of(self.chain, self.expectation, self.spread, self.widen)
 
-    def climbed(self, images: Sequence[Difference]) -> tuple[list[Likely], float]:
-        """The distinct poses that the best places lead to, and the volume searched [m2 rad]."""
-        filtered = [
+    @property
+    def volume(self) -> float:
+        """Of place and heading, searched [m2 rad]."""
+        return self._lattice.volume
+
+    def prepared(self, images: Sequence[Difference]) -> Searchable:
+        """Difference images of both cameras, filtered once for all searches."""
+        left, right = (
             FilterImages(
                 np.stack([filter_snr(i, s, self.spread) for i, s in zip(c.images, c.sigma, strict=True)]),
                 corner,
             )
             for c, corner in zip(images, self.corners_px, strict=True)
-        ]
-        starts, volume = search(self.chain, filtered, self.expectation, self.spread, self.widen, _STARTS)
-        unit = _flux_unit(images, self.spread)
-        likely = _climb_all(self.chain, self.evidence(images), self.readings, starts, unit)
-        return [one for one in likely if self.searched(one)], volume
+        )
+        gain = relative_gain(self.chain, self.expectation.state)
+        evidence = Evidence.of(images, self.corners_px, self.spread, gain)
+        return Searchable((left, right), evidence, _flux_unit(images, self.spread))
+
+    def climbed(self, images: Searchable, used: NDArray[np.bool_] | None = None) -> list[Likely]:
+        """The distinct poses that the best places lead to by the light of all markers, or the used (n,)."""
+        used = np.ones(len(self.chain.markers_plc_m), dtype=np.bool_) if used is None else used
+        starts = self._lattice.best(images.filtered, used, _STARTS)
+        reached: list[Likely] = []
+        for start in starts:
+            if start.snr <= max(starts[0].snr - _COARSE_LOSS, 0.0):
+                break
+            flux = used * (start.snr / np.sqrt(2 * len(used)) * images.flux_unit)
+            one = most_likely(self.chain, images.evidence, self.readings, start.state, flux, shared=True)
+            if one is not None and not any(alike(self.chain, one, other) for other in reached):
+                reached.append(one)
+        return [one for one in reached if self.searched(one)]
 
     def searched(self, one: Likely) -> bool:
         """Whether a climb ended about where it was allowed to begin: of chance finds elsewhere the threshold
@@ -62,15 +97,16 @@ class JointScene:
         reach = REGION_SIGMAS * max(self.widen, 1.0)
         return self.expectation.distance2(one.state.site_body) <= _PLACE_AND_HEADING * reach**2
 
-    def threshold(self, volume: float, rate: float) -> float:
+    def threshold(self, rate: float) -> float:
+        """The joint SNR that noise alone exceeds somewhere in the region at this rate."""
         state = self.expectation.state
-        return joint_threshold(self.chain, state, self.readings, self.spread, volume, rate, self.seeing)
+        return joint_threshold(self.chain, state, self.readings, self.spread, self.volume, rate, self.seeing)
 
-    def expected_snr(self, images: Sequence[Difference]) -> float:
+    def expected_snr(self, images: Searchable) -> float:
         """Joint SNR of all markers at their nominal power, seen as expected."""
         flux = flux_expected(self.chain.rig, view_of(self.chain, self.expectation.state))
         seen = len(self.seeing) * len(self.chain.markers_plc_m)
-        return flux / _flux_unit(images, self.spread) * math.sqrt(seen)
+        return flux / images.flux_unit * math.sqrt(seen)
 
 
 def relative_gain(chain: Chain, state: ChainState) -> Array:
@@ -99,22 +135,6 @@ def _flux_unit(cameras: Sequence[Difference], spread: Spread) -> float:
     every = np.array([float(np.median(s)) for c in cameras for s in c.sigma])
     sigma = np.median(every[np.isfinite(every)]) if np.isfinite(every).any() else 1.0
     return float(sigma / np.sqrt(spread.energy))
-
-
-def _climb_all(
-    chain: Chain, evidence: Evidence, readings: Readings, starts: Sequence[Hypothesis], flux_unit: float
-) -> list[Likely]:
-    """The distinct poses that the starts lead to."""
-    markers = len(chain.markers_plc_m)
-    reached: list[Likely] = []
-    for start in starts:
-        if start.snr <= max(starts[0].snr - _COARSE_LOSS, 0.0):
-            break
-        flux = np.full(markers, start.snr / np.sqrt(2 * markers) * flux_unit)
-        likely = most_likely(chain, evidence, readings, start.state, flux, shared=True)
-        if likely is not None and not any(alike(chain, likely, other) for other in reached):
-            reached.append(likely)
-    return reached
 
 
 def alike(chain: Chain, one: Likely, other: Likely) -> bool:

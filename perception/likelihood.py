@@ -8,10 +8,11 @@ the chain's Jacobian to pose, head and joints, next to encoders, inclinometers a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from executive.types import Array
 from perception.body import Transform
@@ -45,11 +46,16 @@ class Evidence:
         cls, cameras: Sequence[Difference], corners_px: Sequence[tuple[int, int]], spread: Spread, gain: Array
     ) -> Evidence:
         pad = _radius(spread)
-        rim = ((0, 0), (pad, pad), (pad, pad))
-        left, right = (np.pad(plain(c.images), rim) for c in cameras)
-        weights = [np.pad(plain(c.sigma) ** -2, rim) for c in cameras]
+        left, right = (_padded(c.images, pad) for c in cameras)
+        weights = [_padded(np.square(1 / c.sigma, dtype=np.float64), pad) for c in cameras]
         corners = [plain(corner) - pad for corner in corners_px]
         return cls((left, right), (weights[0], weights[1]), (corners[0], corners[1]), spread, plain(gain))
+
+    def exchanged(self, order: Sequence[int]) -> Evidence:
+        """The same if each marker were on the line of the LED that stands in its place."""
+        left, right = (images[order] for images in self.images)
+        weights = [weights[order] for weights in self.weights]
+        return replace(self, images=(left, right), weights=(weights[0], weights[1]))
 
     @cached_property
     def shown(self) -> Shown:
@@ -133,6 +139,14 @@ def place_of(state: ChainState, flux_counts: Array) -> Place:
     """A state with the markers' fluxes (n,) for the kernels."""
     body = state.site_body
     return Place(plain(body.rotation), plain(body.position_m), state.angles_rad, plain(flux_counts))
+
+
+def _padded(images: NDArray[np.floating], pad: int) -> Array:
+    """Images (n, h, w) with a rim of zeros."""
+    n, height, width = images.shape
+    padded = np.zeros((n, height + 2 * pad, width + 2 * pad))
+    padded[:, pad:-pad, pad:-pad] = images
+    return padded
 
 
 def _radius(spread: Spread) -> int:

@@ -8,6 +8,7 @@ lattice is as fine as the filter's width asks, no finer.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from executive.types import Array
 from perception.body import Transform
 from perception.chain import Chain, ChainState
-from perception.kernels.lattice import add_pattern
+from perception.kernels.lattice import best_shifts
 from perception.prediction import Expectation
 from perception.psf import Spread
 from perception.rotation import exp_map, rot_z
@@ -64,36 +65,13 @@ class _Motion:
         return cls(J[..., :3] @ away, J[..., 5], about, J[..., 2])
 
 
-def search(
-    chain: Chain,
-    cameras: Sequence[FilterImages],
-    expectation: Expectation,
-    spread: Spread,
-    widen: float,
-    at_most: int,
-) -> tuple[list[Hypothesis], float]:
-    """The best hypotheses, one a pattern, best first; the volume of place and heading searched [m2 rad]."""
-    lattice = _Lattice.of(chain, expectation, _STEP_WIDTHS * spread.width_px, widen)
-    found: list[Hypothesis] = []
-    for state in lattice.patterns(expectation.state):
-        uv, _ = chain.project(state)
-        if not np.isfinite(uv).all():
-            continue
-        score = _scores(cameras, uv, lattice.columns, lattice.rows)
-        row, column = np.unravel_index(int(score.argmax()), score.shape)
-        place = lattice.moved(state, int(column) - lattice.columns, int(row) - lattice.rows)
-        found.append(Hypothesis(place, float(score[row, column])))
-    found.sort(key=lambda h: -h.snr)
-    return found[:at_most], lattice.volume
-
-
 @dataclass(frozen=True, eq=False)
-class _Lattice:
-    """The hypotheses: distances and headings off the expected ones, half-widths in columns and rows, and the
-    volume of place and heading [m2 rad] that they span."""
+class Lattice:
+    """The hypotheses: poses of all distances and headings, the patterns (p, 2, n, 2) that their markers make,
+    half-widths in columns and rows, and the volume of place and heading [m2 rad] that they span."""
 
-    away_m: Array
-    turn_rad: Array
+    poses: list[ChainState]
+    uv_px: Array
     columns: int
     rows: int
     column_per_rad: float
@@ -101,8 +79,8 @@ class _Lattice:
     volume: float
 
     @classmethod
-    def of(cls, chain: Chain, expectation: Expectation, step_px: float, widen: float) -> _Lattice:
-        state, reach = expectation.state, REGION_SIGMAS * widen
+    def of(cls, chain: Chain, expectation: Expectation, spread: Spread, widen: float) -> Lattice:
+        state, reach, step_px = expectation.state, REGION_SIGMAS * widen, _STEP_WIDTHS * spread.width_px
         motion = _Motion.of(chain, state)
         x, y, _ = state.site_body.position_m
         distance = max(math.hypot(x, y), 0.1)
@@ -117,9 +95,18 @@ class _Lattice:
         half_away = min(reach * sigma_away, 0.8 * distance)
         half_turn = min(reach * math.hypot(math.sqrt(P[5, 5]), sigma_bearing), math.pi)
         columns = math.ceil(reach * sigma_bearing * abs(per_rad) + _ROOM_PX)
-        return cls(
+        distances, turns = (
             _steps(half_away, motion.away, step_px),
             _steps(half_turn, motion.turn, step_px),
+        )
+        seen = [
+            (one, uv)
+            for one in _poses(state, distances, turns)
+            if np.isfinite(uv := chain.project(one)[0]).all()
+        ]
+        return cls(
+            [one for one, _ in seen],
+            np.array([uv for _, uv in seen]).reshape(-1, 2, len(chain.markers_plc_m), 2),
             columns,
             math.ceil(reach * math.sqrt(P[2, 2]) * abs(per_m) + _ROOM_PX),
             per_rad,
@@ -127,16 +114,21 @@ class _Lattice:
             8 * half_away * half_turn * columns / abs(per_rad) * distance,
         )
 
-    def patterns(self, expected: ChainState) -> Iterator[ChainState]:
-        """The expected state moved away and turned on the spot."""
-        body = expected.site_body
-        outward = body.position_m * [1.0, 1.0, 0.0] / max(math.hypot(*body.position_m[:2]), 1e-9)
-        for away in self.away_m:
-            for turn in self.turn_rad:
-                moved = Transform(rot_z(float(turn)) @ body.rotation, body.position_m + away * outward)
-                yield ChainState(moved, expected.head_rad, expected.joints_rad)
+    def best(
+        self, cameras: Sequence[FilterImages], used: NDArray[np.bool_], at_most: int
+    ) -> list[Hypothesis]:
+        """The best hypotheses by the light of the used markers (n,), one a pattern, best first."""
+        left, right = cameras
+        corners = np.array([left.corner_px, right.corner_px], dtype=np.int64)
+        images = left.snr, right.snr
+        sums, shifts = best_shifts(images, corners, used, self.uv_px, self.rows, self.columns)
+        scale = 1 / math.sqrt(2 * len(used))
+        first = np.argsort(-sums, kind="stable")[:at_most].tolist()
+        return [
+            Hypothesis(self._moved(self.poses[k], *shifts[k].tolist()), scale * float(sums[k])) for k in first
+        ]
 
-    def moved(self, state: ChainState, columns: int, rows: int) -> ChainState:
+    def _moved(self, state: ChainState, rows: int, columns: int) -> ChainState:
         """The state whose pattern is shifted by so many pixels: about the mast, and up or down."""
         about = exp_map(_UP * (columns / self.column_per_rad))
         lift = _UP * (rows / self.row_per_m)
@@ -146,17 +138,17 @@ class _Lattice:
         )
 
 
+def _poses(expected: ChainState, away_m: Array, turn_rad: Array) -> Iterator[ChainState]:
+    """The expected state moved away and turned on the spot."""
+    body = expected.site_body
+    outward = body.position_m * [1.0, 1.0, 0.0] / max(math.hypot(*body.position_m[:2]), 1e-9)
+    for away, turn in itertools.product(away_m.tolist(), turn_rad.tolist()):
+        moved = Transform(rot_z(turn) @ body.rotation, body.position_m + away * outward)
+        yield ChainState(moved, expected.head_rad, expected.joints_rad)
+
+
 def _steps(half_width: float, motion_px: Array, step_px: float) -> Array:
     """Offsets within +-half_width, so fine that no marker strays from the pattern by more than `step_px`."""
     strays = float(np.linalg.norm(motion_px - motion_px.mean(axis=(0, 1)), axis=-1).max())
     count = math.ceil(half_width * strays / step_px)
     return np.linspace(-half_width, half_width, 2 * count + 1)
-
-
-def _scores(cameras: Sequence[FilterImages], uv_px: Array, columns: int, rows: int) -> NDArray[np.float32]:
-    """Joint SNR (2 rows + 1, 2 columns + 1) of the pattern `uv_px` (2, n, 2) at all its shifts."""
-    total = np.zeros((2 * rows + 1, 2 * columns + 1), dtype=np.float32)
-    for camera, uv in zip(cameras, uv_px, strict=True):
-        add_pattern(total, camera.snr, *camera.corner_px, uv)
-    total *= np.float32(1 / math.sqrt(uv_px.shape[0] * uv_px.shape[1]))
-    return total

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from executive.types import Array
 from perception.checks import as_finite
 from perception.kernels.frames import Counts, Frames, equalised, mean_and_range
-from perception.trembling import coarse_shifts, moved_back, shown_by_all, unknown_px
+from perception.trembling import Movable, coarse_shifts, shown_by_all, unknown_px
 
 _MARKER_NOISES = 12.0  # a pixel that changes by more is a marker's, not the background's
 _VISIBLE_NOISE = 0.5  # a fitted change that alters pixels by less than this is noise fitted to noise
@@ -73,12 +73,13 @@ def compare(
 
 def _settled(frames: Frames, noise_counts: float, limits: SimilarityLimits) -> Similarity | None:
     """The same for frames of a head that trembles by pixels; None if it does by too many, or not at all."""
-    shift = coarse_shifts(frames)
+    movable = Movable(frames)
+    shift = coarse_shifts(frames, movable)
     found: Similarity | None = None
     for _ in range(_FINE_ROUNDS):
         if not _VISIBLE_SHIFT_PX < np.abs(shift).max() <= limits.trembling_px:
             return None
-        moved = moved_back(frames, shift)
+        moved = movable.moved_back(shift)
         inside = shown_by_all(moved.shape[1:], shift)
         if inside.mean() < _MIN_BACKGROUND / 2:
             return None

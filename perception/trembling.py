@@ -26,32 +26,52 @@ _REFLECTED_PX = 12  # beyond the rim, so that it does not ring
 _RIM_PX = 4  # that this spoils all the same
 
 
-def coarse_shifts(frames: Frames) -> Array:
+class Movable:
+    """Frames (n, h, w) that can be moved, each by as much as it wants; transformed once for all moves."""
+
+    def __init__(self, frames: Frames) -> None:
+        self._shape = frames.shape[1:]
+        rim = ((0, 0), *((_REFLECTED_PX, _rim_beyond(size)) for size in self._shape))
+        padded = np.pad(frames, rim, mode="symmetric")
+        self._size = padded.shape[1:]
+        self._waves = fft.rfft2(padded)
+
+    def moved_back(self, shift_px: Array) -> Frames:
+        """The frames moved by minus their shifts (n, 2)."""
+        height, width = self._shape
+        rows, columns = fft.fftfreq(self._size[0]), fft.rfftfreq(self._size[1])
+        moved = np.empty((len(self._waves), height, width), dtype=np.float32)
+        for out, waves, (u, v) in zip(moved, self._waves, shift_px.tolist(), strict=True):
+            turned = waves * np.exp(2j * np.pi * v * rows).astype(np.complex64)[:, None]
+            turned *= np.exp(2j * np.pi * u * columns).astype(np.complex64)
+            whole = fft.irfft2(turned, s=self._size, overwrite_x=True)
+            out[:] = whole[_REFLECTED_PX:, _REFLECTED_PX:][:height, :width]
+        return moved
+
+
+def coarse_shifts(frames: Frames, movable: Movable) -> Array:
     """How far each frame (n, h, w) is off their mean (n, 2) [px], u and v, to some 0.2 px, by phase
     correlation."""
     size = frames.shape[2], frames.shape[1]
     window = cv2.createHanningWindow(size, cv2.CV_32F)
-    shift, moved, reference = np.zeros((len(frames), 2)), frames, frames[0]
-    for _ in range(_ROUNDS):
-        light = reference - reference.mean()
-        shift = shift + [cv2.phaseCorrelate(light, frame - frame.mean(), window)[0] for frame in moved]
-        shift -= shift.mean(axis=0)
-        moved = moved_back(frames, shift)
-        reference = moved.mean(axis=0)
+    shift = _off(frames, frames[0], window)
+    for _ in range(_ROUNDS - 1):
+        moved = movable.moved_back(shift)
+        shift = shift + _off(moved, moved.mean(axis=0), window)
     return shift
 
 
-def moved_back(frames: Frames, shift_px: Array) -> Frames:
-    """Frames (n, h, w) moved by minus their shifts (n, 2)."""
-    moved = np.empty_like(frames)
-    height, width = (n + 2 * _REFLECTED_PX for n in frames.shape[1:])
-    rows, columns = fft.fftfreq(height)[:, None], fft.rfftfreq(width)
-    for out, frame, (u, v) in zip(moved, frames, shift_px.tolist(), strict=True):
-        waves = fft.rfft2(np.pad(frame, _REFLECTED_PX, mode="symmetric"))
-        waves *= np.exp(2j * np.pi * (rows * v + columns * u)).astype(np.complex64)
-        whole = fft.irfft2(waves, s=(height, width))
-        out[:] = whole[_REFLECTED_PX:-_REFLECTED_PX, _REFLECTED_PX:-_REFLECTED_PX]
-    return moved
+def _off(frames: Frames, reference: Frames, window: Frames) -> Array:
+    """How far each frame (n, h, w) is off the others (n, 2) [px], seen against one of them or their mean."""
+    light = reference - reference.mean()
+    off = np.array([cv2.phaseCorrelate(light, frame - frame.mean(), window)[0] for frame in frames])
+    return off - off.mean(axis=0)
+
+
+def _rim_beyond(size: int) -> int:
+    """What is added behind so many pixels, so that their transform is a fast one."""
+    least = size + 2 * _REFLECTED_PX
+    return int(fft.next_fast_len(least, real=True)) - size - _REFLECTED_PX
 
 
 def shown_by_all(shape: tuple[int, ...], shift_px: Array) -> NDArray[np.bool_]:

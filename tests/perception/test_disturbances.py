@@ -10,7 +10,7 @@ from perception.frames import blackness, fresh, staleness, stuck_pixels
 from perception.identity import exchanges
 from perception.similarity import compare
 from perception.stacking import Stack
-from perception.trembling import coarse_shifts, moved_back
+from perception.trembling import Movable, coarse_shifts
 from tests.perception.disturbances import MATRIX
 from tests.perception.far_trials import run_trial
 from tests.perception.synthetic import noise_counts
@@ -104,8 +104,9 @@ def test_frames_of_a_trembling_head_are_brought_onto_one_another():
     off = rng.uniform(-2.5, 2.5, (16, 2))
     off -= off.mean(axis=0)
     still = np.repeat(ground[None], 16, axis=0).astype(np.float32)
-    shaken = moved_back(still, -off) + rng.normal(0, 1.7, still.shape).astype(np.float32)
-    np.testing.assert_allclose(coarse_shifts(shaken.astype(np.float32)), off, atol=0.6)
+    shaken = Movable(still).moved_back(-off) + rng.normal(0, 1.7, still.shape).astype(np.float32)
+    frames = shaken.astype(np.float32)
+    np.testing.assert_allclose(coarse_shifts(frames, Movable(frames)), off, atol=0.6)
     found = compare(shaken.round().astype(np.uint16), 1.7)
     assert found.problem == ""
     np.testing.assert_allclose(found.shift_px, off, atol=0.1)
@@ -114,7 +115,7 @@ def test_frames_of_a_trembling_head_are_brought_onto_one_another():
 
 def test_moving_a_frame_leaves_its_noise_as_it_was():
     noise = np.random.default_rng(6).standard_normal((4, 200, 200)).astype(np.float32)
-    moved = moved_back(noise, np.full((4, 2), 0.5))
+    moved = Movable(noise).moved_back(np.full((4, 2), 0.5))
     assert moved.std() == pytest.approx(1.0, rel=0.02)
 
 

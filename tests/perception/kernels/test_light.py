@@ -110,7 +110,7 @@ def test_a_pattern_is_scored_by_the_images_at_its_places_and_by_nothing_outside(
     snr = np.random.default_rng(4).standard_normal((2, 9, 11)).astype(np.float32)
     uv = np.array([[103.6, 202.2], [109.2, 207.9]])
     total = np.zeros((5, 7), dtype=np.float32)
-    add_pattern(total, snr, 100, 200, uv)
+    add_pattern(total, snr, 100, 200, uv, np.array([True, True]))
     for j, i in np.ndindex(total.shape):
         places = [(v - 200 + j - 2, u - 100 + i - 3) for u, v in ((104, 202), (109, 208))]
         inside = [(m, v, u) for m, (v, u) in enumerate(places) if 0 <= v < 9 and 0 <= u < 11]
