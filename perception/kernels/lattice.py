@@ -52,6 +52,8 @@ def add_pattern(
         u = int(np.rint(uv_px[m, 0])) - left - columns // 2
         v = int(np.rint(uv_px[m, 1])) - top - rows // 2
         first, last = max(-u, 0), min(columns, width - u)
+        if first >= last:  # slices would count from the other end
+            continue
         for j in range(max(-v, 0), min(rows, height - v)):
             sums, light = total[j, first:last], snr[m, v + j, u + first : u + last]
             for i in range(len(light)):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from perception.kernels.frames import equalised, mean_and_range
-from perception.kernels.lattice import add_pattern
+from perception.kernels.lattice import add_pattern, best_shifts
 from perception.kernels.light import joined, local_fits
 from perception.psf import Spread
 from tests.perception.synthetic import spot
@@ -106,12 +106,26 @@ def test_frames_are_freed_of_what_a_basis_explains_by_least_squares():
     np.testing.assert_allclose(frames, left.reshape(stack.shape) + mean, rtol=1e-5)
 
 
-def test_a_pattern_is_scored_by_the_images_at_its_places_and_by_nothing_outside():
+@pytest.mark.parametrize("away_px", [0.0, -3.0, 4.0, -8.0, 9.0, -300.0, 300.0])
+def test_a_pattern_is_scored_by_the_images_at_its_places_and_by_nothing_outside(away_px: float):
     snr = np.random.default_rng(4).standard_normal((2, 9, 11)).astype(np.float32)
-    uv = np.array([[103.6, 202.2], [109.2, 207.9]])
+    uv = np.array([[103.6 + away_px, 202.2], [109.2, 207.9 + away_px]])
     total = np.zeros((5, 7), dtype=np.float32)
     add_pattern(total, snr, 100, 200, uv, np.array([True, True]))
     for j, i in np.ndindex(total.shape):
-        places = [(v - 200 + j - 2, u - 100 + i - 3) for u, v in ((104, 202), (109, 208))]
+        places = [(v + j - 202, u + i - 103) for u, v in np.rint(uv).astype(int)]
         inside = [(m, v, u) for m, (v, u) in enumerate(places) if 0 <= v < 9 and 0 <= u < 11]
         assert total[j, i] == pytest.approx(sum(snr[place] for place in inside), rel=1e-6)
+
+
+def test_markers_that_are_not_used_add_nothing_to_the_best_place_of_a_pattern():
+    snr = np.random.default_rng(5).standard_normal((2, 4, 30, 40)).astype(np.float32)
+    uv = np.random.default_rng(6).uniform(5, 25, (6, 2, 4, 2))
+    used, corners = np.array([True, False, True, True]), np.zeros((2, 2), dtype=np.int64)
+    highest, shift = best_shifts((snr[0], snr[1]), corners, used, uv, 2, 3)
+    for pattern, most, (row, column) in zip(uv, highest, shift, strict=True):
+        total = np.zeros((5, 7), dtype=np.float32)
+        for camera in (0, 1):
+            dark = snr[camera] * used[:, None, None].astype(np.float32)
+            add_pattern(total, dark, 0, 0, pattern[camera], np.ones(4, dtype=np.bool_))
+        assert total[row + 2, column + 3] == total.max() == pytest.approx(most, rel=1e-6)
