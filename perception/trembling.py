@@ -83,8 +83,13 @@ def shown_by_all(shape: tuple[int, ...], shift_px: Array) -> NDArray[np.bool_]:
 
 
 def unknown_px(shift_px: Array) -> float:
-    """Standard deviation of the mean pointing of a sequence with these shifts (n, 2), in each axis."""
-    return float(np.sqrt((shift_px**2).mean() / len(shift_px)))
+    """Standard deviation of the mean pointing of a sequence with these shifts (n, 2), in each axis.
+
+    Few frames tell their own sway badly: of a Gaussian's, guessed from d squares, the mean of the squared
+    error over the guess is d / (d - 2), which the guess is widened by.
+    """
+    frames, squares = len(shift_px), 2 * (len(shift_px) - 1)
+    return math.sqrt(float((shift_px**2).sum()) / frames / max(squares - 2, 1))
 
 
 def shaken(chain: Chain, unknown: Sequence[float]) -> Chain:

@@ -10,7 +10,7 @@ from perception.frames import blackness, fresh, staleness, stuck_pixels
 from perception.identity import exchanges
 from perception.similarity import compare
 from perception.stacking import Stack
-from perception.trembling import Movable, coarse_shifts
+from perception.trembling import Movable, coarse_shifts, unknown_px
 from tests.perception.disturbances import MATRIX
 from tests.perception.far_trials import run_trial
 from tests.perception.synthetic import noise_counts
@@ -111,6 +111,14 @@ def test_frames_of_a_trembling_head_are_brought_onto_one_another():
     assert found.problem == ""
     np.testing.assert_allclose(found.shift_px, off, atol=0.1)
     assert found.rest_counts.max() < 1.7 * 1.7
+
+
+@pytest.mark.parametrize("frames", [5, 9, 64])
+def test_the_mean_pointing_of_few_trembling_frames_is_as_little_known_as_is_said(frames: int):
+    off = np.random.default_rng(7).standard_normal((4000, frames, 2))
+    mean = off.mean(axis=1)
+    said = np.array([unknown_px(one - middle) for one, middle in zip(off, mean, strict=True)])
+    assert ((mean / said[:, None]) ** 2).mean() == pytest.approx(1.0, rel=0.08)
 
 
 def test_moving_a_frame_leaves_its_noise_as_it_was():
