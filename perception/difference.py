@@ -19,6 +19,8 @@ from executive.types import Array
 
 _LEAK_FACTOR = 1.15
 _NO_WORD = 1e6  # counts, of noise: a pixel that says nothing
+_MARKER_SIGMAS = 4.0  # of the background: what lies beyond is a marker or a hot pixel
+_SPREAD_ROUNDS = 2
 _ROUNDING = 1e-3  # counts, of single precision: an even image is not all outliers
 
 
@@ -130,11 +132,15 @@ def shown_noise(image: NDArray[np.floating[Any]], expected: float) -> float:
 
 
 def _spread(image: NDArray[np.floating[Any]]) -> float:
-    """Standard deviation without what lies beyond 4 of them (markers, hot pixels).
+    """Standard deviation of the background.
 
     Not from quantiles: counts are whole numbers, a quantile of their difference is off by up to half of one.
     """
-    pixels = image.ravel() - image.mean()
-    for _ in range(2):
-        pixels = pixels[np.abs(pixels) <= 4 * pixels.std() + _ROUNDING]
-    return float(pixels.std())
+    pixels = np.asarray(image - image.mean(), dtype=np.float32).ravel()
+    variance, limit = 0.0, math.inf
+    for _ in range(_SPREAD_ROUNDS + 1):
+        within = np.abs(pixels) <= limit
+        pixels, count = pixels * within, int(np.count_nonzero(within))
+        variance = float(pixels @ pixels) / max(count, 1) - (float(pixels.sum()) / max(count, 1)) ** 2
+        limit = _MARKER_SIGMAS * math.sqrt(max(variance, 0.0)) + _ROUNDING
+    return math.sqrt(max(variance, 0.0))

@@ -101,6 +101,6 @@ def stuck_pixels(counts: NDArray[np.uint16], sensor: SensorCalibration) -> NDArr
     """Pixels (h, w) that show nothing of the scene: full, or empty, in every frame of a stack by day."""
     least, most = counts.min(axis=0), counts.max(axis=0)
     stuck: NDArray[np.bool_] = least >= 2**sensor.bits - 1
-    if float(np.median(most)) >= _DAY_COUNTS:
+    if 2 * np.count_nonzero(most >= _DAY_COUNTS) > most.size:
         stuck |= most == 0
     return stuck

@@ -54,9 +54,9 @@ def detection_threshold(pixels: int, false_alarm_rate: float) -> float:
 def filter_snr(image: NDArray[np.float32], sigma: NDArray[np.float32], spread: Spread) -> NDArray[np.float32]:
     """SNR (h, w) of a marker centred at each pixel of a difference image with noise `sigma` (h, w)."""
     line = spread.line().astype(np.float32)
-    whitened = (image / sigma**2).astype(np.float32)
-    signal = _filtered(whitened, line)
-    power = _filtered((1.0 / sigma**2).astype(np.float32), line**2)
+    weight = np.asarray(1.0 / np.square(sigma), dtype=np.float32)
+    signal = _filtered(image * weight, line)
+    power = _filtered(weight, line**2)
     return np.asarray(signal / np.sqrt(np.maximum(power, 1e-20)), dtype=np.float32)
 
 
@@ -114,8 +114,7 @@ def _without_spikes(
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """The image without pixels that no marker could light: far below zero, or so much brighter than all four
     beside them as its spread never is. They keep their place at a noise that takes their say."""
-    high = image > _SPIKE_SIGMAS * sigma
-    rows, columns = np.nonzero(high)
+    rows, columns = _places(image > _SPIKE_SIGMAS * sigma)
     spikes = image < -_SPIKE_SIGMAS * sigma
     if len(rows):
         beside = np.pad(image / sigma, 1)
@@ -132,9 +131,15 @@ def _without_spikes(
 def _peaks(snr: NDArray[np.float32], threshold: float, at_most: int) -> list[tuple[int, int]]:
     """Columns and rows of local maxima above the threshold, the highest first."""
     highest = cv2.dilate(snr, np.ones((3, 3), np.uint8), borderType=cv2.BORDER_REPLICATE)
-    rows, columns = np.nonzero((snr >= highest) & (snr > threshold))
+    rows, columns = _places((snr >= highest) & (snr > threshold))
     order = np.argsort(-snr[rows, columns])[:at_most]
     return [(int(columns[i]), int(rows[i])) for i in order]
+
+
+def _places(where: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of what is true; where little is, several times as fast as `nonzero` of two axes."""
+    rows, columns = np.divmod(np.flatnonzero(where), where.shape[1])
+    return rows, columns
 
 
 def _fit(
