@@ -58,6 +58,9 @@ POWER = Kind("power", "W", "11 uW")
 CURRENT = Kind("current", "A", "80 mA")
 FRACTION = Kind("fraction", "", "40 %")
 
+_IN_FILES = {ANGLE.unit: "deg", TURN_RATE.unit: "deg/s"}
+_DECIMALS, _FEW_TURNS = 9, 1e3
+
 KINDS: tuple[Kind, ...] = (
     LENGTH,
     ANGLE,
@@ -180,7 +183,14 @@ def _shown(given: object) -> str:
 
 
 def written(value: float, unit: str) -> str:
-    """The text that reads back to `value` bit for bit: `0.03` and `m` → `0.03 m`."""
+    """The text that reads back to `value` bit for bit: `0.03` and `m` → `0.03 m`; angles in degrees if they
+    are whole numbers of some decimals."""
+    if unit in _IN_FILES and abs(value) < _FEW_TURNS:
+        scale, _ = factor(_IN_FILES[unit])
+        rounded = round(value / float(scale), _DECIMALS)
+        text = f"{rounded:.{_DECIMALS}f}".rstrip("0").rstrip(".") + f" {_IN_FILES[unit]}"
+        if parse(text)[0] == value:
+            return text
     return f"{value!r} {unit}".rstrip()
 
 
