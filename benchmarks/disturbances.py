@@ -8,7 +8,7 @@ where 95 % are detected, or each of the others but 5 % is refused with a reason 
 the truth (tests/perception/disturbances.py), and at most 0.5 % are false: accepted, but x, y or yaw off by
 more than 5 of their own sigmas. The most frequent reasons stand below a row that refuses. The exit code is 1
 where a row does not hold. A whole run (17 disturbances at seven ranges, some 25 minutes on two cores) writes
-docs/images/disturbances_table.txt.
+the table and its picture to docs/images.
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from benchmarks.disturbances_picture import draw
 from benchmarks.perception import DEMANDS
 from tests.perception.disturbances import MATRIX, Case
 from tests.perception.far_trials import Trial, run_trial
 
 NEAR, WIDE = (0.05, np.radians(3.0)), (0.15, np.radians(10.0))  # how far the prediction may be off
 ANSWERED, FALSE = 0.95, 0.005
-TABLE = Path("docs/images/disturbances_table.txt")
+TABLE, PICTURE = Path("docs/images/disturbances_table.txt"), Path("docs/images/disturbances.png")
 HEAD = "disturbance       range  pairs  detected  refused  rightly  false   NEES  holds\n" + 20 * " " + "[m]"
 
 
@@ -106,19 +107,19 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", default=list(MATRIX), choices=list(MATRIX), metavar="NAME")
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
-    lines, holds = [f"{options.trials} trials a row", HEAD], True
-    print("\n".join(lines), flush=True)
+    rows, head = [], f"{options.trials} trials a row\n{HEAD}"
+    print(head, flush=True)
     with ProcessPoolExecutor(options.jobs) as pool:
         for name in options.only:
             for range_m in options.ranges:
                 work = partial(one, name, range_m, WIDE if options.wide else NEAR)
                 row = Row.of(name, range_m, list(pool.map(work, range(options.trials), chunksize=4)))
-                holds &= row.holds
-                lines.append(str(row))
+                rows.append(row)
                 print(row, flush=True)
     if set(options.only) == set(MATRIX) and set(options.ranges) == set(DEMANDS):
-        TABLE.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return int(not holds)
+        TABLE.write_text("\n".join([head, *map(str, rows)]) + "\n", encoding="utf-8")
+        draw(rows, PICTURE)
+    return int(not all(row.holds for row in rows))
 
 
 if __name__ == "__main__":
