@@ -53,7 +53,7 @@ def coarse_shifts(frames: Frames, movable: Movable) -> Array:
     """How far each frame (n, h, w) is off their mean (n, 2) [px], u and v, to some 0.2 px, by phase
     correlation."""
     size = frames.shape[2], frames.shape[1]
-    window = cv2.createHanningWindow(size, cv2.CV_32F)
+    window = np.asarray(cv2.createHanningWindow(size, cv2.CV_32F), dtype=np.float32)
     shift = _off(frames, frames[0], window)
     for _ in range(_ROUNDS - 1):
         moved = movable.moved_back(shift)
@@ -64,8 +64,9 @@ def coarse_shifts(frames: Frames, movable: Movable) -> Array:
 def _off(frames: Frames, reference: Frames, window: Frames) -> Array:
     """How far each frame (n, h, w) is off the others (n, 2) [px], seen against one of them or their mean."""
     light = reference - reference.mean()
-    off = np.array([cv2.phaseCorrelate(light, frame - frame.mean(), window)[0] for frame in frames])
-    return off - off.mean(axis=0)
+    found = [cv2.phaseCorrelate(light, frame - frame.mean(), window)[0] for frame in frames]
+    off: Array = np.array(found) - np.mean(found, axis=0)
+    return off
 
 
 def _rim_beyond(size: int) -> int:
