@@ -59,6 +59,7 @@ CURRENT = Kind("current", "A", "80 mA")
 FRACTION = Kind("fraction", "", "40 %")
 
 _IN_FILES = {ANGLE.unit: "deg", TURN_RATE.unit: "deg/s"}
+_DEGREE = Decimal(repr(math.radians(1.0)))  # as `factor` has it, without waiting for the table of units
 _DECIMALS, _FEW_TURNS = 9, 1e3
 
 KINDS: tuple[Kind, ...] = (
@@ -186,11 +187,9 @@ def written(value: float, unit: str) -> str:
     """The text that reads back to `value` bit for bit: `0.03` and `m` → `0.03 m`; angles in degrees if they
     are whole numbers of some decimals."""
     if unit in _IN_FILES and abs(value) < _FEW_TURNS:
-        scale, _ = factor(_IN_FILES[unit])
-        rounded = round(value / float(scale), _DECIMALS)
-        text = f"{rounded:.{_DECIMALS}f}".rstrip("0").rstrip(".") + f" {_IN_FILES[unit]}"
-        if parse(text)[0] == value:
-            return text
+        number = f"{math.degrees(value):.{_DECIMALS}f}".rstrip("0").rstrip(".")
+        if float(Decimal(number) * _DEGREE) == value:
+            return f"{number} {_IN_FILES[unit]}"
     return f"{value!r} {unit}".rstrip()
 
 

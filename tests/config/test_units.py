@@ -92,3 +92,18 @@ def test_constraints_apply_to_the_si_value():
 def test_dimensions_have_names():
     assert units.name_of(units.dimension("km/h")) == "speed"
     assert units.name_of(units.dimension("m*m")) == "meter^2"
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (math.radians(35.0), "rad", "35 deg"),
+        (math.radians(-0.4), "rad", "-0.4 deg"),
+        (math.radians(10.0), "rad/s", "10 deg/s"),
+        (0.005, "rad", "0.005 rad"),
+        (0.03, "m", "0.03 m"),
+    ],
+)
+def test_angles_are_written_in_degrees_where_these_read_back(value, unit, text):
+    assert units.written(value, unit) == text
+    assert units.parse(text)[0] == value
