@@ -66,7 +66,7 @@ class LedStereoLocalizer:
 
     @staticmethod
     def preload() -> None:
-        """What processes that fork from this one would each do anew; see executive.backends."""
+        """What processes that fork from this one would each do anew; see executive.ports.Localizer."""
         warm_up()
 
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:

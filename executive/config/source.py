@@ -179,6 +179,12 @@ def _syntax_problem(error: yaml.MarkedYAMLError, name: str) -> Problem:
     return Problem(name, line, column, said.replace("\n", " "))
 
 
+_TAGS: dict[type[yaml.Node], str] = {
+    yaml.SequenceNode: BaseResolver.DEFAULT_SEQUENCE_TAG,
+    yaml.MappingNode: BaseResolver.DEFAULT_MAPPING_TAG,
+}
+
+
 class _Loader(Reader, Scanner, Parser, Composer, BaseResolver):
     """PyYAML up to the node graph: no constructor, so no tag can make anything."""
 
@@ -192,7 +198,7 @@ class _Loader(Reader, Scanner, Parser, Composer, BaseResolver):
 
     def resolve(self, kind: type[yaml.Node], value: Any, implicit: Any) -> Any:
         """No tag for a scalar that carries none: what a plain one means is decided by the core schema."""
-        return None if kind is yaml.ScalarNode else super().resolve(kind, value, implicit)  # type: ignore[no-untyped-call]  # untyped in the stubs
+        return _TAGS.get(kind)
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         self.depth += 1

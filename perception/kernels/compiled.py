@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 from numba import njit
-from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core import caching
 from numpy.typing import ArrayLike
 
 from executive.types import Array
@@ -27,19 +27,18 @@ def compiled(function: Function) -> Function:
     """
     made: Any = njit(error_model="numpy")(function)
     with contextlib.suppress(RuntimeError):  # no folder to keep it in
-        made._cache = _Kept(function)
+        made._cache = _cache_of(function)
     return cast(Function, made)
 
 
-class _Kept(FunctionCache):
+def _cache_of(function: Callable[..., object]) -> Any:
     """Goes stale with any file of the function's folder: numba looks at the function's own file alone, and
     would go on calling what another file said before."""
-
-    def __init__(self, function: Callable[..., object]) -> None:
-        super().__init__(function)  # type: ignore[no-untyped-call]  # numba has no types
-        stamp = _sources(Path(function.__code__.co_filename).parent)
-        base = self._impl.filename_base
-        self._cache_file = IndexDataCacheFile(self.cache_path, base, stamp)  # type: ignore[no-untyped-call]  # numba has no types
+    numba: Any = caching  # which has no types
+    cache = numba.FunctionCache(function)
+    stamp = _sources(Path(function.__code__.co_filename).parent)
+    cache._cache_file = numba.IndexDataCacheFile(cache.cache_path, cache._impl.filename_base, stamp)
+    return cache
 
 
 @cache

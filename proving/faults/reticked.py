@@ -68,7 +68,7 @@ class NodeFault(Counted):
             yield from self.tick(node, cue) if cue.active else self.untouched(node)
             yield node.node
 
-        node.node.tick = tick  # type: ignore[method-assign]  # this node only
+        vars(node.node)["tick"] = tick  # of this node only, not of its class
 
     def untouched(self, node: Reticked) -> Iterator[Behaviour]:
         """The node's tick while the fault is not there."""

@@ -53,7 +53,7 @@ def test_nothing_is_kept_where_nothing_can_be_written(monkeypatch):
     def nowhere(*args):
         raise RuntimeError("cannot cache function: no locator available")
 
-    monkeypatch.setattr("perception.kernels.compiled._Kept", nowhere)
+    monkeypatch.setattr("numba.core.caching.FunctionCache", nowhere)
     from perception.kernels.compiled import compiled
 
     assert compiled(lambda x: x + 1)(1.0) == 2.0
