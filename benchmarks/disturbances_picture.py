@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from benchmarks.disturbances import Row
 
 _HEIGHT, _WIDTH = 0.72, 0.94  # of a bar, in cells
+_FALSE = "#c0392b"
 
 
 def draw(rows: list[Row], path: Path) -> None:
@@ -25,6 +26,9 @@ def draw(rows: list[Row], path: Path) -> None:
             width = _WIDTH * count / row.trials
             axis.barh(names.index(row.name), width, _HEIGHT, left, color=colour, label=label)
             left += width
+        if row.false:  # too few to show as a bar, and what matters most
+            place, around = (left - 0.03, names.index(row.name)), {"boxstyle": "round", "fc": "w", "lw": 0}
+            axis.annotate(f"{row.false} false", place, ha="right", va="center", color=_FALSE, bbox=around)
     axis.set_xticks(
         range(len(ranges)), [f"{r:g} m\n{n} pair{'s' * (n > 1)}" for r, n in ranges.items()], fontsize=9
     )
@@ -44,5 +48,5 @@ def _parts(row: Row) -> tuple[tuple[str, str, int], ...]:
         ("located", "#2f7ebc", row.detected - row.false),
         ("refused, with what is wrong or the truth as reason", "#c9d3dc", row.right),
         ("refused for another reason", "#e8a33d", refused - row.right),
-        ("false", "#c0392b", row.false),
+        ("false", _FALSE, row.false),
     )
