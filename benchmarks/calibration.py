@@ -16,16 +16,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import binom, chi2
 
-from executive.chance import generator
-from executive.clock import Stopwatch
-from executive.one_thread import one_thread
-from executive.rig import RigCalibration
-from executive.types import Array
+from executive.core.chance import generator
+from executive.core.clock import Stopwatch
+from executive.core.one_thread import one_thread
+from executive.core.rig import RigCalibration
+from executive.core.types import Array
 from perception.calibration import NAMES, Calibrated, Survey, calibrate, changed_rig
 from perception.calibration.parameters import prior_sigmas
-from perception.chain import Chain, ChainState
-from perception.pose import Sighting, estimate
-from perception.rotation import rot_z
+from perception.geometry.chain import Chain, ChainState
+from perception.geometry.pose import Sighting, estimate
+from perception.geometry.rotation import rot_z
 from tests.perception.calibration.field import BELIEVED, DEGREE, Field, rover_at, survey
 
 PLANTED = {"vergence": 0.3 * DEGREE, "pan_zero": 1.0 * DEGREE, "focal": 5e-3}

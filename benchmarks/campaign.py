@@ -41,7 +41,7 @@ LEAST_SPEED_UP, MOST_OUTSIDE = 1.9, 0.15
 
 
 def campaign(*arguments: object) -> list[str]:
-    program = "from executive.cli import main; main()"
+    program = "from executive.cli.command_line import main; main()"
     return [sys.executable, "-c", program, "campaign", *(str(a) for a in arguments), "--quiet"]
 
 

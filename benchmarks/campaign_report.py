@@ -9,9 +9,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from executive import app
-from executive.chance import generator
-from executive.clock import Stopwatch
+from executive.core.chance import generator
+from executive.core.clock import Stopwatch
+from executive.run import app
 from proving.campaign_report import write_campaign_report
 
 SETTINGS = ("plain", "other")

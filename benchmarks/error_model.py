@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
-from executive.rig import RigCalibration
-from executive.types import Window
-from perception.difference import difference, led_sequence
-from perception.markers import find_markers
-from perception.psf import marker_spread
+from executive.core.rig import RigCalibration
+from executive.core.types import Window
+from perception.frames.difference import difference, led_sequence
+from perception.frames.psf import marker_spread
+from perception.markers.centres import find_markers
 from sim_pybullet.error_model import centre_error
 from sim_pybullet.leds import Spot, add_spot
 from sim_pybullet.radiometry import Exposure, spread_sigma_px

@@ -25,14 +25,14 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from executive.rig import RigCalibration
-from executive.telemetry.events import Telemetry, TruthEvent
-from executive.telemetry.history import At, History
-from executive.telemetry.result import vision_fixes
-from executive.telemetry.truth import PoseError, Track
-from executive.types import PoseEstimate, Source
-from perception.body import Transform, points_in_body
-from perception.chain import Chain
+from executive.core.rig import RigCalibration
+from executive.core.types import PoseEstimate, Source
+from executive.record.events import Telemetry, TruthEvent
+from executive.record.history import At, History
+from executive.record.result import vision_fixes
+from executive.record.truth import PoseError, Track
+from perception.geometry.body import Transform, points_in_body
+from perception.geometry.chain import Chain
 
 LONGARM = Path(sys.executable).with_name("longarm")
 MISSION = "missions/far_drive.yaml"

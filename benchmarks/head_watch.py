@@ -3,7 +3,7 @@
     python -m benchmarks.head_watch [--trials N]
 
 Each trial takes a reference picture of procedural ground, moves the head's frame by a planted rotation and
-shift, changes the light, takes another picture and asks `perception.alignment`. The head points as well as
+shift, changes the light, takes another picture and asks `head.alignment`. The head points as well as
 it does. NEES is the mean squared error in units of the reported covariance, 8 if that is true.
 """
 
@@ -16,12 +16,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.rig import RigCalibration
-from executive.types import Centres, HeadReading, Images, Shot
-from perception.alignment import Alignment, align
-from perception.chain import Chain
-from perception.head_watch import DOWN_RAD
-from perception.registration import matched
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    Centres,
+    HeadReading,
+    Images,
+    Shot,
+)
+from perception.geometry.chain import Chain
+from perception.head.alignment import Alignment, align
+from perception.head.head_watch import DOWN_RAD
+from perception.head.registration import matched
 from sim_pybullet.geometric import CentreDeveloper
 from sim_pybullet.ground_marks import SIGMA_PX
 from sim_pybullet.imaging import ImageDeveloper

@@ -17,11 +17,11 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from executive.types import HeadReading, Shot
-from perception.choice import Choice
-from perception.look import look_at
-from perception.plausibility import choose
-from perception.pose import roll_pitch
+from executive.core.types import HeadReading, Shot
+from perception.geometry.pose import roll_pitch
+from perception.markers.choice import Choice
+from perception.markers.look import look_at
+from perception.markers.plausibility import choose
 from sim_pybullet.geometric import CentreDeveloper
 from sim_pybullet.leds import MarkerOptics
 from sim_pybullet.radiometry import Exposure, calibrated_light

@@ -19,12 +19,17 @@ import cv2
 import numpy as np
 from scipy.optimize import least_squares
 
-from executive.clock import Stopwatch
-from executive.rig import RigCalibration
-from perception.body import Transform, plc_in_body
-from perception.camera import triangulate
-from perception.chain import STATE_SIZE, ChainState
-from perception.pose import Sighting, estimate, guess_body, roll_pitch
+from executive.core.clock import Stopwatch
+from executive.core.rig import RigCalibration
+from perception.geometry.body import Transform, plc_in_body
+from perception.geometry.camera import triangulate
+from perception.geometry.chain import STATE_SIZE, ChainState
+from perception.geometry.pose import (
+    Sighting,
+    estimate,
+    guess_body,
+    roll_pitch,
+)
 from tests.perception import far_trials
 from tests.perception.synthetic import Scene, scene
 

@@ -14,13 +14,18 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import chi2
 
-from executive.clock import Stopwatch
-from executive.rig import CabinCalibration, HeadCalibration, RigCalibration
-from perception.body import Transform, points_in_body
-from perception.camera import triangulate
-from perception.exposure import filter_snr_per_pair, pairs_needed, view_of
-from perception.pose import Sighting, estimate, guess_body, roll_pitch
-from perception.rotation import exp_map
+from executive.core.clock import Stopwatch
+from executive.core.rig import CabinCalibration, HeadCalibration, RigCalibration
+from perception.frames.exposure import filter_snr_per_pair, pairs_needed, view_of
+from perception.geometry.body import Transform, points_in_body
+from perception.geometry.camera import triangulate
+from perception.geometry.pose import (
+    Sighting,
+    estimate,
+    guess_body,
+    roll_pitch,
+)
+from perception.geometry.rotation import exp_map
 from tests.perception.synthetic import Scene, scene
 from tests.perception.trials import run
 

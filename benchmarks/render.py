@@ -10,9 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from executive.clock import Stopwatch
-from executive.rig import RigCalibration
-from executive.types import LEFT, Vec2, Window
+from executive.core.clock import Stopwatch
+from executive.core.rig import RigCalibration
+from executive.core.types import LEFT, Vec2, Window
 from sim_pybullet.picture import Picture
 from sim_pybullet.procedural import Relief, make_ground
 from sim_pybullet.projection import about_y, about_z

@@ -15,11 +15,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from executive.chance import generator
-from executive.clock import Stopwatch
-from executive.temporal import judge, on_one_grid, parse_formula
-from executive.types import Array
-from executive.values import NUMBER
+from executive.core.chance import generator
+from executive.core.clock import Stopwatch
+from executive.core.types import Array
+from executive.core.values import NUMBER
+from executive.judge.temporal import judge, on_one_grid, parse_formula
 
 FORMULAS = (
     "x > -2 until[0{u}{sep}{window}{u}] y > 2",

@@ -13,12 +13,19 @@ import argparse
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from executive.backends import BackendRequest
-from executive.ports import LocaliseRequest
-from executive.prediction import quat_from_heading_tilt
-from executive.rig import RigCalibration
-from executive.types import Outcome, Point, PoseEstimate, Quality, Segment, Source
-from perception.localizer import LedStereoLocalizer
+from executive.config.backends import BackendRequest
+from executive.core.ports import LocaliseRequest
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    Outcome,
+    Point,
+    PoseEstimate,
+    Quality,
+    Segment,
+    Source,
+)
+from executive.isc.prediction import quat_from_heading_tilt
+from perception.localizer.localizer import LedStereoLocalizer
 from sim_pybullet import BACKEND
 from sim_pybullet.backend import SimBackend
 from sim_pybullet.config import WorldConfig

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from executive.show import draw
+from executive.report.show import draw
 from executive.tree.load import load_tree
 
 ROOT = Path(__file__).parent.parent

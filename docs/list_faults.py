@@ -9,8 +9,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from executive.faults import CATEGORIES
-from executive.listing import entries
+from executive.inject.faults import CATEGORIES
+from executive.run.listing import entries
 
 PAGE = Path(__file__).parent / "faults.md"
 

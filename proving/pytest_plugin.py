@@ -55,7 +55,7 @@ class ScenarioFile(pytest.File):
     """A scenario file: one item, named as the scenario."""
 
     def collect(self) -> Iterator[pytest.Item]:
-        from executive.errors import LongarmError
+        from executive.core.errors import LongarmError
         from proving.suite.collect import one
 
         config = self.config

@@ -8,8 +8,8 @@ from typing import Any
 import yaml
 
 from executive.config.source import read_text
-from executive.errors import ConfigError
-from executive.scenario import ResolvedScenario, resolve_source
+from executive.core.errors import ConfigError
+from executive.run.scenario import ResolvedScenario, resolve_source
 
 Data = dict[str, Any]
 Keys = tuple[str | int, ...]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from executive.rows import first_violated
-from executive.scenario import ResolvedScenario
+from executive.record.rows import first_violated
+from executive.run.scenario import ResolvedScenario
 from proving.engine import Case, CaseClass, Ending
 
 

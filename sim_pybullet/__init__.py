@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pydantic import BaseModel
 
-from executive.backends import BackendRequest, BackendSpec, WorldProblem
-from executive.ports import Backend
-from executive.types import Segment
+from executive.config.backends import BackendRequest, BackendSpec, WorldProblem
+from executive.core.ports import Backend
+from executive.core.types import Segment
 from sim_pybullet.config import WorldConfig
 
 __all__ = ["BACKEND"]

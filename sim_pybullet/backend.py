@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Protocol
 
-from executive.backends import BackendRequest
-from executive.chance import generator
-from executive.clock import Clock, Stopwatch
-from executive.errors import LongarmError
-from executive.ports import Cameras, Devices
-from executive.rig import RigCalibration
-from executive.types import Point, Segment
+from executive.config.backends import BackendRequest
+from executive.core.chance import generator
+from executive.core.clock import Clock, Stopwatch
+from executive.core.errors import LongarmError
+from executive.core.ports import Cameras, Devices
+from executive.core.rig import RigCalibration
+from executive.core.types import Point, Segment
 from sim_pybullet.cameras import make_cameras
 from sim_pybullet.config import WorldConfig
 from sim_pybullet.exposing import ExposureLog

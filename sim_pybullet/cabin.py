@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from executive.clock import Clock
-from executive.ports import Action
-from executive.rig import CabinCalibration
-from executive.types import CabinReading, Outcome, Reason
+from executive.core.clock import Clock
+from executive.core.ports import Action
+from executive.core.rig import CabinCalibration
+from executive.core.types import CabinReading, Outcome, Reason
 from sim_pybullet.actions import DeviceAction, PerTick, ended
 from sim_pybullet.joints import Axis, within
 

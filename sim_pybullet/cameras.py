@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from executive.clock import Clock, Stopwatch
-from executive.rig import RigCalibration
-from executive.types import HeadReading
+from executive.core.clock import Clock, Stopwatch
+from executive.core.rig import RigCalibration
+from executive.core.types import HeadReading
 from sim_pybullet.exposing import Developer, SimCameras
 from sim_pybullet.geometric import CentreDeveloper
 from sim_pybullet.imaging import ImageDeveloper

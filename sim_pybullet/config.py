@@ -9,7 +9,13 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
-from executive.units import Acceleration, Angle, Fraction, Length, Pressure
+from executive.core.units import (
+    Acceleration,
+    Angle,
+    Fraction,
+    Length,
+    Pressure,
+)
 from sim_pybullet.soil import SOILS, Soil
 
 SoilName = Literal["crust", "loose_sand", "gravel", "bedrock"]

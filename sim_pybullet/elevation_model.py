@@ -12,7 +12,7 @@ import numpy as np
 import tifffile
 from scipy.interpolate import RectBivariateSpline
 
-from executive.types import Array, Vec2
+from executive.core.types import Array, Vec2
 from sim_pybullet.procedural import fractal, levelled
 from sim_pybullet.terrain import Terrain, TerrainError
 

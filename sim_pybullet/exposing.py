@@ -6,9 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from executive.clock import Clock
-from executive.rig import RigCalibration
-from executive.types import Centres, HeadReading, Images, Outcome, Reason, Shot, Window
+from executive.core.clock import Clock
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    Centres,
+    HeadReading,
+    Images,
+    Outcome,
+    Reason,
+    Shot,
+    Window,
+)
 from sim_pybullet.scene import SceneSource, SceneState
 
 _SAME_TIME_S = 1e-9

@@ -6,8 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from executive.rig import RigCalibration
-from executive.types import LEFT, RIGHT, Array, Centres, HeadReading, Landmarks, Shot, Window
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    LEFT,
+    RIGHT,
+    Array,
+    Centres,
+    HeadReading,
+    Landmarks,
+    Shot,
+    Window,
+)
 from sim_pybullet.error_model import JOINT_EXCESS, CentreError, centre_error, joint_chance
 from sim_pybullet.exposing import full_windows
 from sim_pybullet.ground_marks import GroundMarks, nothing_seen

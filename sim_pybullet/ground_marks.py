@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.types import Array, Landmarks, Window
+from executive.core.types import Array, Landmarks, Window
 from sim_pybullet.projection import View
 from sim_pybullet.raycast import HeightField
 

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Array
+from executive.core.types import Array
 from sim_pybullet.sunlight import SKYLIGHT, Sun
 
 Image = NDArray[np.float32]

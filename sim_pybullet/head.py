@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from executive.clock import Clock
-from executive.ports import Action
-from executive.rig import HeadCalibration
-from executive.types import HeadReading, Outcome, Reason
+from executive.core.clock import Clock
+from executive.core.ports import Action
+from executive.core.rig import HeadCalibration
+from executive.core.types import HeadReading, Outcome, Reason
 from sim_pybullet.actions import DeviceAction, ended
 from sim_pybullet.head_axis import HeadAxis
 from sim_pybullet.joints import within

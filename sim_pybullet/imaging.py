@@ -5,8 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.clock import Stopwatch
-from executive.types import LEFT, RIGHT, HeadReading, Images, Shot, Window
+from executive.core.clock import Stopwatch
+from executive.core.types import (
+    LEFT,
+    RIGHT,
+    HeadReading,
+    Images,
+    Shot,
+    Window,
+)
 from sim_pybullet.exposing import full_windows
 from sim_pybullet.picture import Picture
 from sim_pybullet.scene import SceneState

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from executive.clock import Clock
-from executive.types import Array, TiltReading
+from executive.core.clock import Clock
+from executive.core.types import Array, TiltReading
 from sim_pybullet.actions import PerTick
 
 

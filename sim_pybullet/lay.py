@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from executive.types import Vec3
+from executive.core.types import Vec3
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.rig import RigCalibration
-from executive.types import Array, Window
+from executive.core.rig import RigCalibration
+from executive.core.types import Array, Window
 from sim_pybullet.projection import View
 from sim_pybullet.radiometry import MarkerLight, emission_factor, pixel_spread, spread_sigma_px
 from sim_pybullet.raycast import HeightField

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from executive.clock import Clock
-from executive.ports import Action
-from executive.types import Call, Outcome, Reason
+from executive.core.clock import Clock
+from executive.core.ports import Action
+from executive.core.types import Call, Outcome, Reason
 from sim_pybullet.actions import DeviceAction
 
 ONE_WAY_S = 20 * 60.0

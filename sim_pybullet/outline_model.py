@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.types import Array, Window
+from executive.core.types import Array, Window
 from sim_pybullet.projection import View
 from sim_pybullet.scene import SceneState
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from executive.types import Segment, Vec2
+from executive.core.types import Segment, Vec2
 
 AT_A_CORNER_M = 0.05  # this near the end of a segment, the next one is the one ahead
 

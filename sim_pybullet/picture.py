@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.rig import RigCalibration
-from executive.types import Window
+from executive.core.rig import RigCalibration
+from executive.core.types import Window
 from sim_pybullet.leds import MarkerOptics, Spot, add_spot
 from sim_pybullet.projection import View, scene_views
 from sim_pybullet.radiometry import Exposure, calibrated_light, spread_sigma_px

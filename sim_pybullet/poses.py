@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.rig import CabinCalibration
-from executive.types import Array, Vec3
+from executive.core.rig import CabinCalibration
+from executive.core.types import Array, Vec3
 
 
 @dataclass(frozen=True, eq=False)

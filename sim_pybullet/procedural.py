@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.types import Array, Vec2
+from executive.core.types import Array, Vec2
 from sim_pybullet.terrain import Terrain
 
 HURST = 0.8  # natural soil surfaces lie at 0.7 to 0.9

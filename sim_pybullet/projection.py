@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from executive.rig import CameraCalibration, HeadCalibration, RigCalibration
-from executive.types import Array
+from executive.core.rig import CameraCalibration, HeadCalibration, RigCalibration
+from executive.core.types import Array
 from sim_pybullet.scene import SceneState
 from sim_pybullet.seeing import CLEAN, Lens, Seeing
 

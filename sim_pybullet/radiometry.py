@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from executive.rig import RigCalibration, SensorCalibration
-from executive.types import Array
+from executive.core.rig import RigCalibration, SensorCalibration
+from executive.core.types import Array
 
 FULL_WELL_E = 160_000.0
 GROUND_FRACTION = 0.40

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Array
+from executive.core.types import Array
 from sim_pybullet.terrain import Terrain
 
 _FARTHEST_M = 250.0

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Array, Window
+from executive.core.types import Array, Window
 from sim_pybullet.ground_texture import GroundTexture
 from sim_pybullet.projection import View
 from sim_pybullet.raycast import HeightField

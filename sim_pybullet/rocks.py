@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from executive.rig import RoverCalibration
-from executive.types import Segment
+from executive.core.rig import RoverCalibration
+from executive.core.types import Segment
 from sim_pybullet.scene import Rock
 from sim_pybullet.terrain import Area, Terrain
 

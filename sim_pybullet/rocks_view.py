@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Array, Window
+from executive.core.types import Array, Window
 from sim_pybullet.projection import View
 from sim_pybullet.raycast import HeightField
 from sim_pybullet.scene import Rock

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from executive.rig import RigCalibration
-from executive.types import Array, Quat, Vec3
+from executive.core.rig import RigCalibration
+from executive.core.types import Array, Quat, Vec3
 from sim_pybullet.bullet import pybullet
 from sim_pybullet.shape import Belt, arm, belt, cabin, chassis
 

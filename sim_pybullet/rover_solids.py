@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from executive.rig import RigCalibration
-from executive.types import Array
+from executive.core.rig import RigCalibration
+from executive.core.types import Array
 from sim_pybullet.scene import Box
 from sim_pybullet.shape import belt, rover_boxes
 

@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.rig import RigCalibration
-from executive.types import Array, Window
+from executive.core.rig import RigCalibration
+from executive.core.types import Array, Window
 from sim_pybullet.projection import View
 from sim_pybullet.raycast import HeightField
 from sim_pybullet.rover_solids import Solid, rover_solids

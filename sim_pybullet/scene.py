@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from executive.types import Array, Vec3
+from executive.core.types import Array, Vec3
 from sim_pybullet.seeing import CLEAR, Seeing
 
 

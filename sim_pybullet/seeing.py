@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from executive.types import Vec3
+from executive.core.types import Vec3
 
 if TYPE_CHECKING:
     from sim_pybullet.sunlight import Sun

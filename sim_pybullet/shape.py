@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from executive.rig import RigCalibration
-from executive.types import Vec3
+from executive.core.rig import RigCalibration
+from executive.core.types import Vec3
 from sim_pybullet.scene import Box
 
 TETHER_ANCHOR_BODY_M: Vec3 = (-0.165, 0.0, 0.045)

@@ -7,9 +7,14 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from executive.chance import generator
-from executive.rig import RigCalibration
-from executive.types import Array, Quat, Segment, Vec3
+from executive.core.chance import generator
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    Array,
+    Quat,
+    Segment,
+    Vec3,
+)
 from sim_pybullet.config import ProceduralConfig, TerrainConfig, WorldConfig, soil_of
 from sim_pybullet.elevation_model import Window, cut, read_model, roughen
 from sim_pybullet.procedural import Relief, make_ground

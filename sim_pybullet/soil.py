@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.types import Vec2
+from executive.core.types import Vec2
 
 
 @dataclass(frozen=True)

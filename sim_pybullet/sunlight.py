@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Array
+from executive.core.types import Array
 from sim_pybullet.terrain import Terrain
 
 SKYLIGHT = 0.22  # share of the light on level ground that comes from the sky, not the sun

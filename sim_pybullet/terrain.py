@@ -8,8 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.errors import LongarmError
-from executive.types import Array, Segment, Vec2, Vec3
+from executive.core.errors import LongarmError
+from executive.core.types import (
+    Array,
+    Segment,
+    Vec2,
+    Vec3,
+)
 
 
 class TerrainError(LongarmError):

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.clock import Clock
-from executive.types import Array, TetherReading, Vec3
+from executive.core.clock import Clock
+from executive.core.types import Array, TetherReading, Vec3
 from sim_pybullet.actions import PerTick
 from sim_pybullet.lay import Bend
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.clock import Clock
-from executive.ports import Action
-from executive.rig import RoverCalibration
-from executive.types import Outcome, Reason, TrackReading
+from executive.core.clock import Clock
+from executive.core.ports import Action
+from executive.core.rig import RoverCalibration
+from executive.core.types import Outcome, Reason, TrackReading
 from sim_pybullet.actions import DeviceAction, PerTick, ended
 from sim_pybullet.motor import Motor
 
@@ -64,7 +64,7 @@ class SimTracks:
         return self.moving or any(left_s > 0.0 for _, left_s in self._run_on)
 
     def drive(self, left_m: float, right_m: float, speed_m_s: float) -> Action[TrackReading]:
-        """Move the belts by these travels (executive.ports.Tracks), at most as fast as the motors can."""
+        """Move the belts by these travels (core.ports.Tracks), at most as fast as the motors can."""
         if not all(map(math.isfinite, (left_m, right_m, speed_m_s))) or speed_m_s <= 0:
             detail = f"got travels {left_m}, {right_m} m at {speed_m_s} m/s, expected finite, speed above 0"
             return ended(Outcome(Reason.OUT_OF_REACH, detail))

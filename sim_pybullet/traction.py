@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from executive.types import Array
+from executive.core.types import Array
 from sim_pybullet.soil import Soil, slip_for, traction_limit
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from executive.telemetry import TruthRecorder
-from executive.telemetry.events import Rock as MapRock
-from executive.telemetry.events import TerrainEvent, TruthEvent
-from executive.types import Quat, Vec3
+from executive.core.types import Quat, Vec3
+from executive.record import TruthRecorder
+from executive.record.events import Rock as MapRock
+from executive.record.events import TerrainEvent, TruthEvent
 from sim_pybullet.scene import Rock
 from sim_pybullet.terrain import Terrain
 

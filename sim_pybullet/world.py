@@ -1,17 +1,17 @@
 """The world in motion: one tick of mission time at a time, quasi-static, asleep while nothing moves.
 
 Mission time runs `time_scale` times faster than Bullet's. At 1.4 mm/s inertia is nothing, so the path
-does not depend on the scale (tests/sim/test_physics.py holds the bound).
+does not depend on the scale (tests/sim_pybullet/test_physics.py holds the bound).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from executive.chance import generator
-from executive.clock import Clock
-from executive.rig import RigCalibration
-from executive.types import Array, Segment
+from executive.core.chance import generator
+from executive.core.clock import Clock
+from executive.core.rig import RigCalibration
+from executive.core.types import Array, Segment
 from sim_pybullet.bullet import pybullet
 from sim_pybullet.cabin import SimCabin
 from sim_pybullet.config import WorldConfig

@@ -6,9 +6,9 @@ import math
 
 from pydantic import BaseModel
 
-from executive.backends import WorldProblem
+from executive.config.backends import WorldProblem
 from executive.config.source import Place
-from executive.types import Segment, Vec2
+from executive.core.types import Segment, Vec2
 from sim_pybullet.config import ProceduralConfig, TerrainConfig, WorldConfig
 from sim_pybullet.elevation_model import Window, default_lander_m, read_model, window_on
 from sim_pybullet.site import CELL_M, ROUTE_MARGIN_M

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from executive.types import Array, Vec2, Vec3
+from executive.core.types import Array, Vec2, Vec3
 from sim_pybullet.exposing import ExposureLog
 from sim_pybullet.leds import rock_blocks
 from sim_pybullet.path import ahead_on

@@ -3,9 +3,9 @@
 import math
 from pathlib import Path
 
-from executive.hypotheses import Hypothesis
-from executive.pool import Situation, Strategy
-from executive.types import Reason
+from executive.core.types import Reason
+from executive.isc.hypotheses import Hypothesis
+from executive.pool.pool import Situation, Strategy
 
 
 def _not_yet_tilted(situation: Situation) -> str | None:

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from executive.hypotheses import Hypothesis
-from executive.pool import Strategy
-from executive.types import Reason
+from executive.core.types import Reason
+from executive.isc.hypotheses import Hypothesis
+from executive.pool.pool import Strategy
 
 STRATEGY = Strategy(
     name="turning_slip_compensation",

@@ -9,8 +9,13 @@ from pydantic_core import PydanticCustomError
 
 from executive.config.source import Source
 from executive.config.validate import Strict, guess, listed
-from executive.types import Reason
-from executive.units import Angle, Duration, Force, Length
+from executive.core.types import Reason
+from executive.core.units import (
+    Angle,
+    Duration,
+    Force,
+    Length,
+)
 
 Name = Annotated[str, Field(min_length=1, max_length=100)]
 FormulaText = Annotated[str, Field(min_length=1, max_length=1000)]

@@ -7,7 +7,7 @@ from pathlib import Path
 import executive
 from executive.config.source import Mark
 from executive.config.validate import guess
-from executive.errors import ConfigError
+from executive.core.errors import ConfigError
 
 INSTALLED = Path(executive.__file__).parent.parent
 SUFFIXES = ("", ".yaml", ".yml")

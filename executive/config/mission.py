@@ -11,7 +11,7 @@ from executive.config.find import shown
 from executive.config.models import MissionFile, Waypoint
 from executive.config.source import Place, Source, read
 from executive.config.validate import parse
-from executive.errors import ConfigError, Problem
+from executive.core.errors import ConfigError, Problem
 
 NEAREST_M, FURTHEST_M = 1.2, 20.0
 """The rover works within 20 m of the lander; nearer than 1.2 m the head cannot see it with both cameras."""

@@ -9,8 +9,8 @@ from pydantic import Field
 
 from executive.config.expect import Expect, Name
 from executive.config.validate import Strict
-from executive.types import Point, Segment
-from executive.units import Duration, Length
+from executive.core.types import Point, Segment
+from executive.core.units import Duration, Length
 
 Margin = Annotated[Length, Field(gt=0)]
 

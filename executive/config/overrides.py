@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from executive.config.source import Mark, Place, Source, read_text
-from executive.errors import ConfigError
+from executive.core.errors import ConfigError
 
 
 def override(source: Source, text: str, number: int, option: str = "--set") -> Source:

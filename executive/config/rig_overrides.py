@@ -1,6 +1,6 @@
 """`rig:` of a scenario: any number of the rig calibration replaced, by its name without the unit suffix.
 
-The schema is made from the dataclasses of `executive.rig`, so a field added there can be set here.
+The schema is made from the dataclasses of `executive.core.rig`, so a field added there can be set here.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin,
 
 from pydantic import BaseModel, create_model
 
-from executive import units
 from executive.config.source import Place, Source
 from executive.config.validate import Strict, parse
-from executive.rig import RigCalibration
+from executive.core import units
+from executive.core.rig import RigCalibration
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

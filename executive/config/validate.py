@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from executive.config.source import Place, Source
-from executive.errors import ConfigError, Problem
+from executive.core.errors import ConfigError, Problem
 
 M = TypeVar("M", bound=BaseModel)
 T = TypeVar("T")

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from executive.core.types import Array
 from executive.report import svg
-from executive.types import Array
 
 _MOST_POINTS = 900
 

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from executive.core.types import Array, PoseEstimate, Segment
+from executive.record.events import SegmentEvent
 from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, time_axis, timed
 from executive.report.figure import Figure
 from executive.report.gather import Run
-from executive.telemetry.events import SegmentEvent
-from executive.types import Array, PoseEstimate, Segment
 
 _WIDTH, _LEFT, _TOP, _HEIGHT = 1100.0, 200.0, 34.0, 250.0
 _MM = 1000.0

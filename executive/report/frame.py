@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.types import Array, Segment, Vec2
+from executive.core.types import Array, Segment, Vec2
 
 _LABEL_PX = 40.0
 

@@ -11,12 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from executive.errors import RecordError
-from executive.telemetry import History, summarise
-from executive.telemetry.events import RouteEvent, SegmentEvent, Start
-from executive.telemetry.result import vision_fixes
-from executive.telemetry.truth import CrossTrack, PoseError, Track, cross_track
-from executive.types import PoseEstimate, Segment, Source
+from executive.core.errors import RecordError
+from executive.core.types import PoseEstimate, Segment, Source
+from executive.record import History, summarise
+from executive.record.events import RouteEvent, SegmentEvent, Start
+from executive.record.result import vision_fixes
+from executive.record.truth import (
+    CrossTrack,
+    PoseError,
+    Track,
+    cross_track,
+)
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from executive.record.events import WaypointEvent
+from executive.record.history import At
+from executive.record.result import waypoint_error_m
 from executive.report import layers, palette, svg
 from executive.report.figure import Figure, millimetres
 from executive.report.frame import MapFrame
 from executive.report.gather import Run
-from executive.telemetry.events import WaypointEvent
-from executive.telemetry.history import At
-from executive.telemetry.result import waypoint_error_m
 
 _SIDE = 250.0
 

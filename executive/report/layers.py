@@ -6,15 +6,15 @@ import math
 
 import numpy as np
 
+from executive.core.rig import RoverCalibration
+from executive.core.types import Array
+from executive.record.events import TerrainEvent
+from executive.record.truth import Track
 from executive.report import palette, svg
 from executive.report.axes import ticks
 from executive.report.frame import MapFrame, corridor, ellipse, outline
 from executive.report.gather import Run
 from executive.report.relief import shaded
-from executive.rig import RoverCalibration
-from executive.telemetry.events import TerrainEvent
-from executive.telemetry.truth import Track
-from executive.types import Array
 
 
 def ground(run: Run, frame: MapFrame) -> str:

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
+from executive.core.types import PoseEstimate
+from executive.record.events import StrategyEvent, Verdict
 from executive.report import layers, palette, svg
 from executive.report.axes import legend
 from executive.report.figure import Figure
 from executive.report.frame import MapFrame, corridor
 from executive.report.gather import Run
-from executive.telemetry.events import StrategyEvent, Verdict
-from executive.types import PoseEstimate
 
 _WIDTH, _LEFT, _BOTTOM = 1100.0, 44.0, 24.0
 _STEREO_HALF_ANGLE_RAD = math.radians(11.5)

@@ -11,6 +11,7 @@ import numpy as np
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
+from executive.record.events import Start
 from executive.report.cross_track import cross_track_figure
 from executive.report.figure import Figure
 from executive.report.gather import Run, gather
@@ -21,7 +22,6 @@ from executive.report.tables import tables
 from executive.report.tiles import tiles, tone_of
 from executive.report.timeline import hypotheses, timeline
 from executive.report.views import views
-from executive.telemetry.events import Start
 
 _FIGURES = (
     (overview, "Map", "neither a plan nor an estimate was recorded"),

@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from executive.core.types import Array
+from executive.record.events import Telemetry
 from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, time_axis, timed
 from executive.report.figure import Figure
 from executive.report.gather import Run
-from executive.telemetry.events import Telemetry
-from executive.types import Array
 
 _WIDTH, _LEFT, _TOP, _BOTTOM = 540.0, 44.0, 30.0, 140.0
 _LEAST_TRAVEL_M = 0.02

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.telemetry.events import TerrainEvent
-from executive.types import Array
+from executive.core.types import Array
+from executive.record.events import TerrainEvent
 
 _LOW, _HIGH = np.array([226.0, 217.0, 203.0]), np.array([247.0, 243.0, 235.0])  # sand, red first
 _SUN = np.array([-0.5, 0.5, 0.7])  # from the upper left, as maps are shaded

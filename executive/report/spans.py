@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import NamedTuple
 
-from executive.addresses import CONTROL
+from executive.record.events import NodeChange
 from executive.report.gather import Run
-from executive.telemetry.events import NodeChange
+from executive.tree.addresses import CONTROL
 
 _SILENT = CONTROL - {"for_each"}
 """Steps of a path that tell nothing; what is done for each of several tells itself from what is done once."""

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from executive.core.types import Call
+from executive.record.events import WaypointEvent
+from executive.record.result import waypoint_error_m
+from executive.record.rows import worst_first
 from executive.report.figure import duration, millimetres
 from executive.report.gather import Run
 from executive.report.overview import letter
-from executive.rows import worst_first
-from executive.telemetry.events import WaypointEvent
-from executive.telemetry.result import waypoint_error_m
-from executive.types import Call
 
 
 @dataclass(frozen=True)

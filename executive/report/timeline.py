@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from executive.core.types import Array
+from executive.record.events import HypothesesEvent
 from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, thinned, time_axis, timed
 from executive.report.figure import Figure, duration
 from executive.report.gather import Run
 from executive.report.spans import Span, fault_spans, leaf_spans, short_names, strategy_spans
-from executive.telemetry.events import HypothesesEvent
-from executive.types import Array
 
 _WIDTH, _LEFT, _ROW, _MOST_LEAVES = 1100.0, 200.0, 20.0, 24
 _COLOURS = {**palette.STATUS, "strategy": palette.STRATEGY, "fault": palette.FAULT}

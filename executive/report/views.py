@@ -9,11 +9,11 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
+from executive.record.events import AnnotationsEvent, ImageEvent
 from executive.report import svg
 from executive.report.axes import legend
 from executive.report.figure import Figure, duration
 from executive.report.gather import Run
-from executive.telemetry.events import AnnotationsEvent, ImageEvent
 
 _MOST = 4
 _DETECTED, _REPROJECTED, _WINDOW = "#ffa033", "#46c8ff", "#7be0a0"

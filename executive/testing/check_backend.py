@@ -5,9 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from executive.backends import BackendRequest, BackendSpec
-from executive.ports import Action, Backend
-from executive.types import Centres, Images, Outcome, Reason, Shot, Window
+from executive.config.backends import BackendRequest, BackendSpec
+from executive.core.ports import Action, Backend
+from executive.core.types import (
+    Centres,
+    Images,
+    Outcome,
+    Reason,
+    Shot,
+    Window,
+)
 
 Make = Callable[[], Backend]
 PATIENCE_TICKS = 3000

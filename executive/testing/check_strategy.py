@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from executive.hypotheses import Hypothesis
-from executive.pool import Strategy
-from executive.types import Reason
+from executive.core.types import Reason
+from executive.isc.hypotheses import Hypothesis
+from executive.pool.pool import Strategy
 
 
 class StrategyBreach(AssertionError):

@@ -14,12 +14,11 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from executive.backends import BackendRequest, BackendSpec
-from executive.clock import Clock
-from executive.ports import Action, Devices, LocaliseRequest
-from executive.prediction import quat_from_heading_tilt
-from executive.rig import RigCalibration
-from executive.types import (
+from executive.config.backends import BackendRequest, BackendSpec
+from executive.core.clock import Clock
+from executive.core.ports import Action, Devices, LocaliseRequest
+from executive.core.rig import RigCalibration
+from executive.core.types import (
     CabinReading,
     Call,
     Centres,
@@ -37,6 +36,7 @@ from executive.types import (
     Vec2,
     View,
 )
+from executive.isc.prediction import quat_from_heading_tilt
 
 T = TypeVar("T")
 PIXELS_PER_M = 1000.0

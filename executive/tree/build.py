@@ -10,10 +10,12 @@ from py_trees import common, composites, decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from executive.attributes import read_attribute
-from executive.errors import ConfigError
-from executive.nodes import LEAVES, situation
-from executive.nodes.base import (
+from executive.core.attributes import read_attribute
+from executive.core.errors import ConfigError
+from executive.core.types import Outcome
+from executive.core.values import SEGMENT, ValueType
+from executive.tree.nodes import LEAVES, situation
+from executive.tree.nodes.base import (
     REQUIRED,
     Binding,
     Constant,
@@ -25,13 +27,11 @@ from executive.nodes.base import (
     Store,
     Trace,
 )
-from executive.nodes.decorators import ForEach, Guarded, Timeout
-from executive.nodes.loop import Loop
-from executive.nodes.recover import Recover
-from executive.nodes.services import Services
+from executive.tree.nodes.decorators import ForEach, Guarded, Timeout
+from executive.tree.nodes.loop import Loop
+from executive.tree.nodes.recover import Recover
+from executive.tree.nodes.services import Services
 from executive.tree.spec import Literal, NodeSpec, PortValue, TreeSpec, fits, root_of, under
-from executive.types import Outcome
-from executive.values import SEGMENT, ValueType
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from executive.nodes import LEAVES
-from executive.nodes.base import REQUIRED, Direction, Leaf, PortSpec
-from executive.values import DURATION, FLAG, INTEGER, ROUTE, SEGMENT, TEXT, ValueType
+from executive.core.values import (
+    DURATION,
+    FLAG,
+    INTEGER,
+    ROUTE,
+    SEGMENT,
+    TEXT,
+    ValueType,
+)
+from executive.tree.nodes import LEAVES
+from executive.tree.nodes.base import (
+    REQUIRED,
+    Direction,
+    Leaf,
+    PortSpec,
+)
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,15 @@ from pydantic import Field
 
 from executive.config.source import Source
 from executive.config.validate import Problems, Strict, guess, listed
-from executive.errors import ConfigError
-from executive.nodes.base import REQUIRED, Direction, FromTree, PortSpec
+from executive.core.errors import ConfigError
+from executive.core.values import VALUE_TYPES
 from executive.tree.literals import literal
-from executive.values import VALUE_TYPES
+from executive.tree.nodes.base import (
+    REQUIRED,
+    Direction,
+    FromTree,
+    PortSpec,
+)
 
 PortName = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 

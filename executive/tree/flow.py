@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from executive.attributes import attribute_of
 from executive.config.source import Mark
 from executive.config.validate import guess, listed
-from executive.errors import Problem
-from executive.expressions import GuardError
-from executive.guards import Guard
-from executive.nodes.base import Direction, PortSpec
+from executive.core.attributes import attribute_of
+from executive.core.errors import Problem
+from executive.core.values import NUMBER, ValueType
+from executive.tree.expressions.guards import Guard
+from executive.tree.expressions.typed import GuardError
+from executive.tree.nodes.base import Direction, PortSpec
 from executive.tree.spec import Reference
-from executive.values import NUMBER, ValueType
 
 
 @dataclass(frozen=True)

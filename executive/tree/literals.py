@@ -6,14 +6,14 @@ import re
 from enum import Enum
 from typing import Any
 
-from executive import units
 from executive.config.source import Place, Source
 from executive.config.validate import guess, listed, shown
-from executive.errors import ConfigError
-from executive.nodes.base import Direction, PortSpec
+from executive.core import units
+from executive.core.errors import ConfigError
+from executive.core.units import UnitError
+from executive.core.values import ValueType
+from executive.tree.nodes.base import Direction, PortSpec
 from executive.tree.spec import Literal, PortValue, Reference
-from executive.units import UnitError
-from executive.values import ValueType
 
 _REFERENCE = re.compile(r"\{\s*([A-Za-z_]\w*)((?:\.[A-Za-z_]\w*)*)\s*\}")
 _KINDS = {kind.name: kind for kind in units.KINDS}

@@ -11,15 +11,20 @@ from executive.config.find import find, names, shown
 from executive.config.source import Mark, Place, Source, read, read_text
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
-from executive.errors import ConfigError, Problem
-from executive.expressions import GuardError
-from executive.guards import parse_guard
-from executive.nodes import LEAVES
-from executive.nodes.base import REQUIRED, Direction, Leaf, PortSpec
+from executive.core.errors import ConfigError, Problem
 from executive.tree.catalogue import ITEMS, NodeType, node_types
+from executive.tree.expressions.guards import parse_guard
+from executive.tree.expressions.typed import GuardError
 from executive.tree.file import TreeFile, declared_ports
 from executive.tree.flow import Flow
 from executive.tree.literals import port_value
+from executive.tree.nodes import LEAVES
+from executive.tree.nodes.base import (
+    REQUIRED,
+    Direction,
+    Leaf,
+    PortSpec,
+)
 from executive.tree.spec import GUARDS, Literal, NodeSpec, PortValue, Reference, TreeSpec
 
 MAX_SIZE = 5000

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from executive.config.source import Mark
-from executive.guards import Guard
-from executive.nodes.base import REQUIRED, PortSpec
-from executive.values import ValueType
+from executive.core.values import ValueType
+from executive.tree.expressions.guards import Guard
+from executive.tree.nodes.base import REQUIRED, PortSpec
 
 
 @dataclass(frozen=True)

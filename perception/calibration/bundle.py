@@ -7,17 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from executive.rig import RigCalibration
-from executive.types import Array
+from executive.core.rig import RigCalibration
+from executive.core.types import Array
 from perception.calibration.parameters import changed_rig
 from perception.calibration.readings import readings
 from perception.calibration.sightings import Indices, Sightings
 from perception.calibration.survey import Survey
 from perception.calibration.unknowns import Unknowns, turn_rate
-from perception.camera import StereoModel
-from perception.chain import Chain
-from perception.head import head_rates, site_ih
-from perception.rotation import skew
+from perception.geometry.camera import StereoModel
+from perception.geometry.chain import Chain
+from perception.geometry.head_model import head_rates, site_ih
+from perception.geometry.rotation import skew
 
 _PROBE = 1e-3  # of a prior sigma, for central differences by the rig's parameters
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from executive.rig import CameraCalibration, RigCalibration
-from executive.types import Array
+from executive.core.rig import CameraCalibration, RigCalibration
+from executive.core.types import Array
 
 DEGREE = math.radians(1.0)
 

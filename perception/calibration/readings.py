@@ -7,12 +7,12 @@ import math
 import numpy as np
 from scipy import sparse
 
-from executive.rig import RigCalibration
-from executive.types import Array
+from executive.core.rig import RigCalibration
+from executive.core.types import Array
 from perception.calibration.survey import Station, Survey
 from perception.calibration.unknowns import Unknowns, turn_rate
-from perception.pose import roll_pitch
-from perception.rotation import rot_y
+from perception.geometry.pose import roll_pitch
+from perception.geometry.rotation import rot_y
 
 _POINT_SIGMA = np.array([1.0, 1.0, 0.5])  # of bearing and inverse distance: only so that nothing is singular
 _POINT_MEAN = np.array([0.0, 0.0, 0.1])

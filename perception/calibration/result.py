@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.rig import RigCalibration
-from executive.types import Array
+from executive.core.rig import RigCalibration
+from executive.core.types import Array
 from perception.calibration.parameters import NAMES, PARAMETERS, changed_rig
-from perception.chain import Chain, ChainState
-from perception.pose import Sighting, chi2_limit, estimate
-from perception.rotation import log_map
+from perception.geometry.chain import Chain, ChainState
+from perception.geometry.pose import Sighting, chi2_limit, estimate
+from perception.geometry.rotation import log_map
 
 OBSERVED = 0.5  # a parameter or direction is observed if the views halve its prior sigma at least
 

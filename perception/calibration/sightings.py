@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Array
+from executive.core.types import Array
 from perception.calibration.survey import Survey
 
 Indices = NDArray[np.intp]

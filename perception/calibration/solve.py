@@ -9,15 +9,15 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
-from executive.rig import RigCalibration
-from executive.types import Array
+from executive.core.rig import RigCalibration
+from executive.core.types import Array
 from perception.calibration.bundle import Bundle
 from perception.calibration.parameters import PARAMETERS, prior_sigmas
 from perception.calibration.result import Calibrated
 from perception.calibration.sightings import Mask, Sightings
 from perception.calibration.start import first_guess
 from perception.calibration.survey import Survey
-from perception.pose import chi2_limit
+from perception.geometry.pose import chi2_limit
 
 _GATE = chi2_limit(2, 0.9999)  # of one image
 _MEDIAN_OFF2 = 2 * math.log(2.0)  # of images that fit

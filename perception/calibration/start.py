@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.rig import RigCalibration
-from executive.types import Array
-from perception.body import Transform
+from executive.core.rig import RigCalibration
+from executive.core.types import Array
 from perception.calibration.sightings import Mask, Sightings
 from perception.calibration.survey import FARTHEST_M, NEAREST_M, Survey
 from perception.calibration.unknowns import Bearing, Unknowns
-from perception.camera import triangulate
-from perception.chain import Chain
-from perception.pose import linear_guess
+from perception.geometry.body import Transform
+from perception.geometry.camera import triangulate
+from perception.geometry.chain import Chain
+from perception.geometry.pose import linear_guess
 
 _DISTANCE_M = 10.0  # of a point that no pair of images gives a distance
 

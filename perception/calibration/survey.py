@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from executive.types import Array, Centres, Vec2
-from perception.checks import as_array, as_finite
+from executive.core.types import Array, Centres, Vec2
+from perception.geometry.checks import as_array, as_finite
 
 NEAREST_M, FARTHEST_M = 0.3, 1000.0
 

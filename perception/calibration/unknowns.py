@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.types import Array
-from perception.body import Transform
-from perception.rotation import exp_map, skew
+from executive.core.types import Array
+from perception.geometry.body import Transform
+from perception.geometry.rotation import exp_map, skew
 
 
 @dataclass(frozen=True, eq=False)

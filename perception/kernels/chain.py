@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from executive.types import Array
+from executive.core.types import Array
 from perception.kernels.compiled import compiled
 from perception.kernels.optics import Optics, pixel
 from perception.kernels.rotations import product

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from executive.types import Array
+from executive.core.types import Array
 from perception.kernels.chain import STATE_SIZE, Cabin, Head, project
 from perception.kernels.compiled import compiled
 from perception.kernels.light import joined, local_fits
@@ -23,7 +23,7 @@ _DIMMEST = 0.2  # of its flux is left where a step would make a marker darker th
 
 
 class Shown(NamedTuple):
-    """What the images say, as perception.likelihood.Evidence has it, and how far patches `reach` [px]."""
+    """What the images say, as markers.likelihood.Evidence has it, and how far patches `reach` [px]."""
 
     images: tuple[Array, Array]
     weights: tuple[Array, Array]

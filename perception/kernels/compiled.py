@@ -14,7 +14,7 @@ from numba import njit
 from numba.core import caching
 from numpy.typing import ArrayLike
 
-from executive.types import Array
+from executive.core.types import Array
 
 Function = TypeVar("Function", bound=Callable[..., object])
 

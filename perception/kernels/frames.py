@@ -1,4 +1,4 @@
-"""Loops over all pixels of all frames, in few passes through memory (perception.similarity)."""
+"""Loops over all pixels of all frames, in few passes through memory (perception.frames.similarity)."""
 
 from __future__ import annotations
 

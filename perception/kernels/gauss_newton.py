@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from executive.types import Array
+from executive.core.types import Array
 from perception.kernels.chain import STATE_SIZE, Cabin, Head, project
 from perception.kernels.compiled import compiled
 from perception.kernels.linear import factor, inverted, solve

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.types import Array
+from executive.core.types import Array
 from perception.kernels.compiled import compiled
 
 

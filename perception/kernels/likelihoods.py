@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from executive.types import Array
+from executive.core.types import Array
 from perception.kernels.chain import STATE_SIZE, project
 from perception.kernels.climb import Place, Task
 from perception.kernels.compiled import compiled

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from executive.types import Array
+from executive.core.types import Array
 from perception.kernels.compiled import compiled
 
 

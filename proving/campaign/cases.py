@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 import yaml
 
-from executive.chance import generator
+from executive.config.distributions import drawn, is_distribution
 from executive.config.overrides import dotted
 from executive.config.source import Place, Source
 from executive.config.validate import Problems, shown
-from executive.distributions import drawn, is_distribution
-from executive.errors import ConfigError
-from executive.fault_entries import RESERVED
-from executive.scenario import ResolvedScenario, resolve
+from executive.core.chance import generator
+from executive.core.errors import ConfigError
+from executive.inject.entries import RESERVED
+from executive.run.scenario import ResolvedScenario, resolve
 from proving.campaign.shape import CampaignFile
 
 Values = Mapping[str, Source]

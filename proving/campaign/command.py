@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from executive.command_group import CommandGroup
+from executive.cli.command_group import CommandGroup
 
 if TYPE_CHECKING:
     from proving.campaign.cases import Campaign
@@ -71,7 +71,7 @@ def run(
 
     Example: longarm campaign random_faults --runs 500 -j 2 --out runs/faults
     """
-    from executive.clock import Stopwatch
+    from executive.core.clock import Stopwatch
     from proving.campaign import run as running
     from proving.campaign.file import find_campaign, load_campaign
     from proving.campaign.folder import CampaignFolder
@@ -157,7 +157,7 @@ def _engine(name: str, address: str | None, slots: int | None) -> Engine:
 
 def _default_folder(loaded: Campaign, resume: bool) -> Path:
     """`runs/NAME-SEED`, the next free one, or to resume the last that is there."""
-    from executive.run_folder import free_folder
+    from executive.record.run_folder import free_folder
 
     name = f"{loaded.file.campaign}-{loaded.file.seed}"
     free = free_folder(Path("runs"), name)

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from uuid import uuid4
 
-from executive.errors import LongarmError
+from executive.core.errors import LongarmError
 from proving.engine import Case, CaseClass, Ending
 from proving.engine.server import ForkServer
 from proving.engine.supervisor import ATTEMPTS, run_alone

@@ -7,15 +7,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from executive.config.distributions import NAMES, is_distribution
+from executive.config.file_kinds import FileKind
 from executive.config.find import find, names, shown
 from executive.config.source import Mark, Place, Source, read
 from executive.config.validate import Problems, listed, parse
 from executive.config.validate import shown as shown_data
-from executive.distributions import NAMES, is_distribution
-from executive.errors import ConfigError, Problem
-from executive.file_kinds import FileKind
-from executive.scenario import as_scenario
-from executive.schema import schema
+from executive.core.errors import ConfigError, Problem
+from executive.run.scenario import as_scenario
+from executive.run.schema import schema
 from proving.campaign.cases import Campaign, Drawn, case_number, resolved, with_faults
 from proving.campaign.shape import CampaignFile
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
 
-from executive.errors import ConfigError, Problem
+from executive.core.errors import ConfigError, Problem
 from proving.campaign.tally import Ended
 
 CAMPAIGN, JOURNAL, CASES, WORK = "campaign.json", "journal.jsonl", "cases", "work"

@@ -8,7 +8,7 @@ from typing import Any, Self
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from executive.clock import Stopwatch
+from executive.core.clock import Stopwatch
 from proving.campaign.run import Watcher
 from proving.campaign.tally import Ended, Tally
 from proving.verdict import GOOD

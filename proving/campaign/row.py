@@ -9,8 +9,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from executive import units
-from executive.units import UnitError
+from executive.core import units
+from executive.core.units import UnitError
 
 _TRUTH = (
     *("final_error_m", "max_cross_track_m", "driven_beyond_off_track_m"),

@@ -7,10 +7,10 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import closing
 from typing import Any
 
-from executive.clock import Stopwatch
 from executive.config.source import Source
-from executive.scenario import ResolvedScenario, resolve
-from executive.telemetry.versions import versions
+from executive.core.clock import Stopwatch
+from executive.record.versions import versions
+from executive.run.scenario import ResolvedScenario, resolve
 from proving.campaign.cases import Campaign, Drawn, Prepared, case_number, prepared, put, seed_of
 from proving.campaign.folder import CampaignFolder
 from proving.campaign.row import row_of, write_row

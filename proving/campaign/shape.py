@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from executive.config.expect import Name
 from executive.config.validate import Strict, shown
-from executive.units import Duration, Fraction
+from executive.core.units import Duration, Fraction
 
 _BYTES = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "KiB": 2**10, "MiB": 2**20, "GiB": 2**30}
 

@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
-from executive.errors import LongarmError
+from executive.core.errors import LongarmError
 from proving.campaign.interval import wilson
 from proving.campaign.shape import StopRule
 from proving.engine import CaseClass

@@ -9,8 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from executive.fault_entries import RESERVED
-from executive.units import UnitError, parse
+from executive.core.units import UnitError, parse
+from executive.inject.entries import RESERVED
 
 LOST = "lost"
 INFRASTRUCTURE = "infrastructure"

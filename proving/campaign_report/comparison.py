@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from html import escape
 
-from executive.chance import generator
+from executive.core.chance import generator
 from executive.report import svg
 from executive.report.axes import Scale, legend
 from executive.report.figure import Figure

@@ -11,7 +11,7 @@ from typing import Any
 
 import yaml
 
-from executive.errors import RecordError
+from executive.core.errors import RecordError
 from proving.campaign_report.case import Case
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times faster where libyaml is there

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from executive.core.units import UnitError, split
 from executive.report import svg
 from executive.report.axes import Scale, legend, ticks
 from executive.report.figure import Figure
-from executive.units import UnitError, split
 from proving.campaign_report.case import Case
 from proving.campaign_report.gather import Campaign
 from proving.campaign_report.statistics import share

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from executive.errors import RecordError
+from executive.core.errors import RecordError
+from executive.record.events import TerrainEvent
 from executive.report import layers, palette, svg
 from executive.report.frame import MapFrame, corridor
 from executive.report.gather import Run, gather
 from executive.report.relief import shaded
-from executive.telemetry.events import TerrainEvent
 from proving.campaign_report.case import Case
 
 WIDTH, HEIGHT = 340.0, 210.0

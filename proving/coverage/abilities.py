@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from types import NoneType
 from typing import get_args, get_type_hints
 
-from executive.nodes import LEAVES
-from executive.nodes.base import Leaf
+from executive.core.types import Reason
+from executive.tree.nodes import LEAVES
+from executive.tree.nodes.base import Leaf
 from executive.tree.spec import NodeSpec
-from executive.types import Reason
 
 Abilities = frozenset[str]
 S, F, R = "success", "failure", "running"

@@ -7,13 +7,13 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from executive import plugins
-from executive.errors import ConfigError
-from executive.fault_entries import RESERVED
-from executive.faults import FaultSpec
-from executive.pool import Strategy
-from executive.scenario import ResolvedScenario
-from executive.telemetry import History, events
+from executive.core import plugins
+from executive.core.errors import ConfigError
+from executive.inject.entries import RESERVED
+from executive.inject.faults import FaultSpec
+from executive.pool.pool import Strategy
+from executive.record import History, events
+from executive.run.scenario import ResolvedScenario
 from proving.coverage.items import Item
 from proving.coverage.recipes import Fault, at_node, for_item
 from proving.coverage.universe import Universe

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import click
 
-from executive.errors import ConfigError, Problem
-from executive.units import FRACTION, UnitError, quantity
+from executive.core.errors import ConfigError, Problem
+from executive.core.units import FRACTION, UnitError, quantity
 from proving.coverage.coverage import Coverage
 
 FILE = click.Path(path_type=Path)

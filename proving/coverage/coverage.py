@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from executive.errors import Problem
+from executive.core.errors import Problem
 from proving.coverage.excuses import Excuses, read_excuses
 from proving.coverage.items import KINDS, Item
 from proving.coverage.seen import Seen, read_runs

@@ -7,9 +7,9 @@ from dataclasses import replace
 from html import escape
 from pathlib import Path
 
-from executive.show.boxes import Box, Tag, boxes
-from executive.show.palette import COVERAGE
-from executive.show.svg import svg
+from executive.report.show.boxes import Box, Tag, boxes
+from executive.report.show.palette import COVERAGE
+from executive.report.show.svg import svg
 from executive.tree.spec import NodeSpec, TreeSpec
 from proving.coverage.coverage import Coverage
 from proving.coverage.items import Item

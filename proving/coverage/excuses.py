@@ -21,11 +21,11 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from executive.config.file_kinds import FileKind
 from executive.config.find import shown
 from executive.config.source import Mark, Source, read
 from executive.config.validate import Strict, guess, listed, parse
-from executive.errors import Problem
-from executive.file_kinds import FileKind
+from executive.core.errors import Problem
 from proving.coverage.items import KINDS, Item
 from proving.coverage.seen import Seen
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from executive.pool_plugins import load_strategies, strategy_trees
-from executive.scenario import ResolvedScenario
+from executive.run.scenario import ResolvedScenario
+from executive.tree.strategies import load_strategies, strategy_trees
 from proving.coverage.excuses import Excuses
 from proving.coverage.items import Item
 from proving.coverage.search import Proposal, Search

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from executive import plugins
-from executive.faults import FaultSpec
-from executive.pool import Strategy
-from executive.types import Reason
+from executive.core import plugins
+from executive.core.types import Reason
+from executive.inject.faults import FaultSpec
+from executive.pool.pool import Strategy
 from proving.coverage.items import Item
 
 Fault = dict[str, Any]

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from shutil import rmtree
 
-from executive.pool import Strategy
-from executive.scenario import ResolvedScenario
-from executive.telemetry import History
+from executive.pool.pool import Strategy
+from executive.record import History
+from executive.run.scenario import ResolvedScenario
 from proving.coverage.bases import Base, candidates, resolved_or_none
 from proving.coverage.coverage import Coverage, put_together
 from proving.coverage.excuses import Excuses

@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Any
 
 from executive.config.source import read_text
-from executive.errors import ConfigError, RecordError
-from executive.fault_entries import RESERVED
-from executive.fault_onsets import Sightings
-from executive.pool_plugins import load_strategies, strategy_trees
-from executive.telemetry import events
-from executive.telemetry.evidence import leading
-from executive.telemetry.history import History
+from executive.core.errors import ConfigError, RecordError
+from executive.core.types import Call, Reason
+from executive.inject.entries import RESERVED
+from executive.inject.onsets import Sightings
+from executive.record import events
+from executive.record.evidence import leading
+from executive.record.history import History
 from executive.tree.load import load_tree
-from executive.types import Call, Reason
+from executive.tree.strategies import load_strategies, strategy_trees
 from proving.coverage.items import Item
 from proving.coverage.universe import HALTED, Universe
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from executive import plugins
-from executive.fault_triggers import PHASES
-from executive.hypotheses import Hypothesis
+from executive.core import plugins
+from executive.core.types import Reason
+from executive.inject.triggers import PHASES
+from executive.isc.hypotheses import Hypothesis
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
-from executive.types import Reason
 from proving.coverage import abilities
 from proving.coverage.abilities import Abilities
 from proving.coverage.items import Item

@@ -11,11 +11,11 @@ import traceback
 from collections.abc import Iterator
 from pathlib import Path
 
-from executive import app
 from executive.config.find import shown
 from executive.config.source import read, read_text
-from executive.errors import LongarmError
-from executive.scenario import resolve_source
+from executive.core.errors import LongarmError
+from executive.run import app
+from executive.run.scenario import resolve_source
 from proving.engine.case import LOG, Case
 
 DONE, REFUSED, DEFECT, MACHINE, MEMORY = 0, 2, 3, 71, 72

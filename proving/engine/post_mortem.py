@@ -10,12 +10,12 @@ from typing import Any
 
 import yaml
 
-from executive.app import judged
-from executive.errors import LongarmError
-from executive.scenario import ResolvedScenario, resolve_scenario
-from executive.telemetry import History, events
-from executive.telemetry.recorder import Recorder
-from executive.telemetry.result import RunFigures, summarise, write_result
+from executive.core.errors import LongarmError
+from executive.record import History, events
+from executive.record.recorder import Recorder
+from executive.record.result import RunFigures, summarise, write_result
+from executive.run.app import judged
+from executive.run.scenario import ResolvedScenario, resolve_scenario
 from proving.engine import child
 from proving.engine.case import LOG, Case, CaseClass, Ending
 from proving.engine.server import Death

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Self
 
-from executive.errors import LongarmError
+from executive.core.errors import LongarmError
 from proving.engine.case import Case
 
 START_S = 60.0

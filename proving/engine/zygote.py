@@ -20,10 +20,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from executive import plugins, units
-from executive.clock import Stopwatch
-from executive.errors import LongarmError, PluginError
-from executive.pool_plugins import load_strategies, strategy_trees
+from executive.core import plugins, units
+from executive.core.clock import Stopwatch
+from executive.core.errors import LongarmError, PluginError
+from executive.tree.strategies import load_strategies, strategy_trees
 from proving.engine import child
 from proving.engine.case import Case
 

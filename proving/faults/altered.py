@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from executive.clock import Clock
-from executive.faults import Fault
-from executive.ports import Action
-from executive.types import Outcome, Reason
+from executive.core.clock import Clock
+from executive.core.ports import Action
+from executive.core.types import Outcome, Reason
+from executive.inject.faults import Fault
 
 T = TypeVar("T")
 

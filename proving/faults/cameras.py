@@ -13,10 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from executive.faults import Cue, FaultSpec
-from executive.ports import Action, Cameras, Devices
-from executive.types import LEFT, RIGHT, Centres, Images, Landmarks, Outcome, Reason, Shot
-from executive.units import Duration
+from executive.core.ports import Action, Cameras, Devices
+from executive.core.types import (
+    LEFT,
+    RIGHT,
+    Centres,
+    Images,
+    Landmarks,
+    Outcome,
+    Reason,
+    Shot,
+)
+from executive.core.units import Duration
+from executive.inject.faults import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted, Held
 from proving.faults.parameters import SIDES, Nothing, OneCamera, Parameters
 

@@ -8,10 +8,22 @@ from typing import Annotated
 
 from pydantic import Field
 
-from executive.faults import Cue, FaultSpec
-from executive.ports import Action, Devices, Inclinometer, LocaliseRequest, Localizer
-from executive.types import Outcome, PoseEstimate, TiltReading, Vec2, View
-from executive.units import Angle, Length
+from executive.core.ports import (
+    Action,
+    Devices,
+    Inclinometer,
+    LocaliseRequest,
+    Localizer,
+)
+from executive.core.types import (
+    Outcome,
+    PoseEstimate,
+    TiltReading,
+    Vec2,
+    View,
+)
+from executive.core.units import Angle, Length
+from executive.inject.faults import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted
 from proving.faults.parameters import Nothing, Parameters
 

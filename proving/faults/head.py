@@ -7,10 +7,22 @@ from typing import Annotated
 
 from pydantic import Field
 
-from executive.faults import Cue, FaultSpec
-from executive.ports import Action, Cameras, Devices, Head
-from executive.types import Centres, HeadReading, Images, Outcome, Shot, Vec2
-from executive.units import Angle
+from executive.core.ports import (
+    Action,
+    Cameras,
+    Devices,
+    Head,
+)
+from executive.core.types import (
+    Centres,
+    HeadReading,
+    Images,
+    Outcome,
+    Shot,
+    Vec2,
+)
+from executive.core.units import Angle
+from executive.inject.faults import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted
 from proving.faults.parameters import Parameters
 

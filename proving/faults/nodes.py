@@ -10,10 +10,10 @@ from py_trees.common import Status
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from executive.errors import NodeRaised
-from executive.faults import Cue, FaultSpec, TreeParts
-from executive.types import Outcome, Reason
-from executive.units import Duration
+from executive.core.errors import NodeRaised
+from executive.core.types import Outcome, Reason
+from executive.core.units import Duration
+from executive.inject.faults import Cue, FaultSpec, TreeParts
 from proving.faults.parameters import Parameters
 from proving.faults.reticked import NodeFault, Reticked, root_of
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import signal
 
-from executive.faults import Fault, FaultSpec
-from executive.ports import Backend
+from executive.core.ports import Backend
+from executive.inject.faults import Fault, FaultSpec
 from proving.faults.parameters import Nothing
 
 

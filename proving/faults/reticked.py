@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from executive.addresses import means
-from executive.faults import Cue, TreeParts
+from executive.inject.faults import Cue, TreeParts
+from executive.tree.addresses import means
 from proving.faults.altered import Counted
 
 

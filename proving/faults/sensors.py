@@ -9,11 +9,19 @@ import cv2
 import numpy as np
 from pydantic import Field
 
-from executive.faults import Cue, FaultSpec
-from executive.ports import Devices
-from executive.rig import RigCalibration
-from executive.types import LEFT, RIGHT, Array, Centres, Images, Landmarks, Window
-from executive.units import Fraction
+from executive.core.ports import Devices
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    LEFT,
+    RIGHT,
+    Array,
+    Centres,
+    Images,
+    Landmarks,
+    Window,
+)
+from executive.core.units import Fraction
+from executive.inject.faults import Cue, FaultSpec
 from proving.faults.cameras import CameraFault, Counts, no_ground, with_counts, with_ground
 from proving.faults.parameters import SIDES, OneCamera, Parameters
 

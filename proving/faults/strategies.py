@@ -10,9 +10,9 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from pydantic import Field
 
-from executive.faults import Cue, FaultSpec
-from executive.pool import Situation, Strategy
-from executive.units import Duration
+from executive.core.units import Duration
+from executive.inject.faults import Cue, FaultSpec
+from executive.pool.pool import Situation, Strategy
 from proving.faults.altered import Counted
 from proving.faults.parameters import Parameters
 from proving.faults.reticked import NodeFault, Reticked

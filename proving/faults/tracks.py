@@ -10,10 +10,15 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from executive.faults import Cue, FaultSpec
-from executive.ports import Action, Devices, Tracks
-from executive.types import Array, Outcome, Reason, TrackReading
-from executive.units import Current, Fraction
+from executive.core.ports import Action, Devices, Tracks
+from executive.core.types import (
+    Array,
+    Outcome,
+    Reason,
+    TrackReading,
+)
+from executive.core.units import Current, Fraction
+from executive.inject.faults import Cue, FaultSpec
 from proving.faults.altered import Counted
 from proving.faults.parameters import SIDES, OneTrack
 

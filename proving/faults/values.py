@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal
 from py_trees.behaviour import Behaviour
 from pydantic import Field
 
-from executive.faults import Cue, FaultSpec, TreeParts
-from executive.units import Fraction
+from executive.core.units import Fraction
+from executive.inject.faults import Cue, FaultSpec, TreeParts
 from proving.faults.parameters import Parameters
 from proving.faults.reticked import NodeFault, Reticked
 

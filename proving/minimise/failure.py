@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from executive.scenario import ResolvedScenario
+from executive.run.scenario import ResolvedScenario
 from proving.engine import CaseClass, Ending
 
 _EXCEPTION = re.compile(r"\b([A-Z]\w*(?:Error|Exception|Exit|Interrupt)|\w+Broken)\b")

@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from executive import plugins
-from executive.fault_entries import RESERVED
-from executive.faults import FaultSpec
-from executive.units import DURATION, UnitError, quantity, split
+from executive.core import plugins
+from executive.core.units import (
+    DURATION,
+    UnitError,
+    quantity,
+    split,
+)
+from executive.inject.entries import RESERVED
+from executive.inject.faults import FaultSpec
 from proving.minimise.fewer import fewer
 from proving.minimise.trier import Trier
 from proving.scenario_data import Data, Keys, get, replaced, without

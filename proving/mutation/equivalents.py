@@ -15,7 +15,7 @@ from pathlib import Path
 from executive.config.find import shown
 from executive.config.source import Mark, read
 from executive.config.validate import guess, parse
-from executive.errors import Problem
+from executive.core.errors import Problem
 from proving.coverage.excuses import CoverageFile, EquivalentMutant
 from proving.mutation.mutants import Mutant
 from proving.mutation.trial import Found

@@ -14,13 +14,13 @@ import yaml
 from executive.config.find import shown
 from executive.config.source import Mark, Source, read
 from executive.config.validate import guess, listed
-from executive.errors import ConfigError, Problem
-from executive.nodes.base import PortSpec
-from executive.pool import Strategy
-from executive.pool_plugins import strategy_trees
+from executive.core.errors import ConfigError, Problem
+from executive.pool.pool import Strategy
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.load import load_tree
+from executive.tree.nodes.base import PortSpec
 from executive.tree.spec import NodeSpec, TreeSpec, walk
+from executive.tree.strategies import strategy_trees
 from proving.coverage.universe import Universe
 from proving.mutation.operators import ABSENT, OPERATORS, Change, Scene, defaults
 from proving.mutation.sites import sites

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from executive.chance import generator
-from executive.clock import Stopwatch
-from executive.pool_plugins import load_strategies
-from executive.scenario import resolve_scenario
+from executive.core.chance import generator
+from executive.core.clock import Stopwatch
+from executive.run.scenario import resolve_scenario
+from executive.tree.strategies import load_strategies
 from proving.coverage.trials import Trial, conduct
 from proving.mutation.equivalents import Equivalents
 from proving.mutation.mutants import Forest, Mutant

@@ -9,11 +9,11 @@ from enum import Enum
 from typing import Any
 
 from executive.config.source import Place, Source
-from executive.nodes.base import PortSpec
+from executive.core.units import UnitError, split
+from executive.core.values import VALUE_TYPES
 from executive.tree.catalogue import NodeType
 from executive.tree.load import BESIDE
-from executive.units import UnitError, split
-from executive.values import VALUE_TYPES
+from executive.tree.nodes.base import PortSpec
 from proving.mutation.sites import Site
 
 ABSENT = object()

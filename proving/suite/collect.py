@@ -10,8 +10,8 @@ from pathlib import Path
 from executive.config.find import find, shown
 from executive.config.source import Mark, read
 from executive.config.validate import Problems
-from executive.errors import ConfigError
-from executive.scenario import ResolvedScenario, resolve_source
+from executive.core.errors import ConfigError
+from executive.run.scenario import ResolvedScenario, resolve_source
 
 SUFFIXES = (".yaml", ".yml")
 _TOP_LEVEL_SCENARIO = re.compile(r"^scenario\s*:", re.M)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict
 
-from executive.errors import LongarmError
-from executive.faults import Fault, FaultSpec
-from executive.hypotheses import Hypothesis
-from executive.ports import Backend
+from executive.core.errors import LongarmError
+from executive.core.ports import Backend
+from executive.inject.faults import Fault, FaultSpec
+from executive.isc.hypotheses import Hypothesis
 
 if TYPE_CHECKING:
     from sim_pybullet.world_faults import Tally, WorldFaults

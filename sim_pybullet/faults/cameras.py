@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
-from executive.hypotheses import Hypothesis
-from executive.types import LEFT, RIGHT
-from executive.units import Angle
+from executive.core.types import LEFT, RIGHT
+from executive.core.units import Angle
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from executive.hypotheses import Hypothesis
-from executive.units import Angle, Fraction, Length
+from executive.core.units import Angle, Fraction, Length
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Nothing, Parameters, WorldFault, spec
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from executive.hypotheses import Hypothesis
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Nothing, WorldFault, spec
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from executive.hypotheses import Hypothesis
-from executive.units import Angle, Duration, Fraction
+from executive.core.units import Angle, Duration, Fraction
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.faults.cameras import CameraChoice
 

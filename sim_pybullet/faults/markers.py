@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Self
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from executive.hypotheses import Hypothesis
-from executive.units import Angle, Fraction, Length
+from executive.core.units import Angle, Fraction, Length
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.seeing import Glint, Screen
 

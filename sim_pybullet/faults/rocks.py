@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Generic, TypeVar
 
 from pydantic import Field
 
-from executive.hypotheses import Hypothesis
-from executive.units import Length, Speed
+from executive.core.units import Length, Speed
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:

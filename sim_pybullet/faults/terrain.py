@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Generic, TypeVar
 
 from pydantic import Field
 
-from executive.hypotheses import Hypothesis
-from executive.types import Vec2
-from executive.units import Fraction, Length
+from executive.core.types import Vec2
+from executive.core.units import Fraction, Length
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.soil import Patch, Soil
 

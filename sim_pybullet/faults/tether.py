@@ -7,8 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from executive.hypotheses import Hypothesis
-from executive.units import Angle, Force, Fraction, Length
+from executive.core.units import (
+    Angle,
+    Force,
+    Fraction,
+    Length,
+)
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Nothing, Parameters, WorldFault, spec
 from sim_pybullet.lay import Bend
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Generic, Literal, TypeVar
 
 from pydantic import Field
 
-from executive.hypotheses import Hypothesis
-from executive.units import Duration, Fraction
+from executive.core.units import Duration, Fraction
+from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:

@@ -10,26 +10,39 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.clock import Stopwatch
-from executive.rig import RigCalibration
-from executive.types import HeadReading, Images, PoseEstimate, Shot, Source, Window
-from perception.body import Transform
-from perception.chain import Chain, ChainState
-from perception.choice import Rejection, noted
-from perception.codes import coded_sequence, lit
-from perception.difference import led_sequence, pair_weights
-from perception.exposure import SNR_WANTED, filter_snr_per_pair, view_of
-from perception.fisher import centre_bound, pose_bound
-from perception.follow_up import pointing_at
-from perception.look import look_at
-from perception.pile import Pile
-from perception.plausibility import choose
-from perception.pose import Fix, roll_pitch
-from perception.prediction import Expectation, expect
-from perception.psf import marker_spread
-from perception.roi import predicted_windows
-from perception.rotation import log_map, quat_from_matrix, rot_x, rot_y, rot_z
-from perception.trembling import shaken
+from executive.core.clock import Stopwatch
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    HeadReading,
+    Images,
+    PoseEstimate,
+    Shot,
+    Source,
+    Window,
+)
+from perception.frames.codes import coded_sequence, lit
+from perception.frames.difference import led_sequence, pair_weights
+from perception.frames.exposure import SNR_WANTED, filter_snr_per_pair, view_of
+from perception.frames.psf import marker_spread
+from perception.frames.vibration import shaken
+from perception.geometry.body import Transform
+from perception.geometry.chain import Chain, ChainState
+from perception.geometry.follow_up import pointing_at
+from perception.geometry.pose import Fix, roll_pitch
+from perception.geometry.prediction import Expectation, expect
+from perception.geometry.roi import predicted_windows
+from perception.geometry.rotation import (
+    log_map,
+    quat_from_matrix,
+    rot_x,
+    rot_y,
+    rot_z,
+)
+from perception.markers.choice import Rejection, noted
+from perception.markers.fisher import centre_bound, pose_bound
+from perception.markers.look import look_at
+from perception.markers.plausibility import choose
+from perception.markers.shot_stack import Pile
 from tests.perception.synthetic import GAIN_E, Scene, noise_counts, observed
 from tests.perception.trial_camera import Disturbance, Nuisance, Stage, TrialCamera, flux_e
 

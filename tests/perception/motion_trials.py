@@ -11,19 +11,25 @@ from functools import lru_cache
 
 import numpy as np
 
-from executive.clock import Stopwatch
-from executive.rig import RigCalibration
-from executive.types import HeadReading, Images, PoseEstimate, Shot, Source
-from perception.body import Transform
-from perception.chain import Chain
-from perception.exposure import view_of
-from perception.follow_up import pointing_at
-from perception.moving_rover import moving_rover
-from perception.pose import roll_pitch
-from perception.prediction import Expectation, expect
-from perception.roi import full_windows, predicted_windows
-from perception.rotation import quat_from_matrix, rot_z
-from perception.trend import CADENCE_S, LEDS, window_margin_px
+from executive.core.clock import Stopwatch
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    HeadReading,
+    Images,
+    PoseEstimate,
+    Shot,
+    Source,
+)
+from perception.frames.exposure import view_of
+from perception.geometry.body import Transform
+from perception.geometry.chain import Chain
+from perception.geometry.follow_up import pointing_at
+from perception.geometry.pose import roll_pitch
+from perception.geometry.prediction import Expectation, expect
+from perception.geometry.roi import full_windows, predicted_windows
+from perception.geometry.rotation import quat_from_matrix, rot_z
+from perception.localizer.trend import CADENCE_S, LEDS, window_margin_px
+from perception.outline.moving_rover import moving_rover
 from sim_pybullet.picture import Picture
 from sim_pybullet.procedural import Relief, make_ground
 from sim_pybullet.sensor import Sensor

@@ -13,16 +13,22 @@ from functools import lru_cache
 
 import numpy as np
 
-from executive.clock import Stopwatch
-from executive.rig import RigCalibration
-from executive.types import PoseEstimate, Source, Window
-from perception.body import Transform
-from perception.chain import Chain
-from perception.follow_up import pointing_at
-from perception.passive import Ground, PassiveFix, Sun, empty_window, passive_fix
-from perception.pose import roll_pitch
-from perception.prediction import Expectation, expect
-from perception.rotation import log_map, quat_from_matrix, rot_z
+from executive.core.clock import Stopwatch
+from executive.core.rig import RigCalibration
+from executive.core.types import PoseEstimate, Source, Window
+from perception.geometry.body import Transform
+from perception.geometry.chain import Chain
+from perception.geometry.follow_up import pointing_at
+from perception.geometry.pose import roll_pitch
+from perception.geometry.prediction import Expectation, expect
+from perception.geometry.rotation import log_map, quat_from_matrix, rot_z
+from perception.outline.passive import (
+    Ground,
+    PassiveFix,
+    Sun,
+    empty_window,
+    passive_fix,
+)
 from sim_pybullet.picture import Picture
 from sim_pybullet.procedural import Relief, make_ground
 from sim_pybullet.projection import about_y

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from executive.clock import Clock
-from executive.ports import Devices
-from executive.types import (
+from executive.core.clock import Clock
+from executive.core.ports import Devices
+from executive.core.types import (
     CabinReading,
     Centres,
     HeadReading,
@@ -21,9 +21,9 @@ from executive.types import (
     TiltReading,
     Window,
 )
-from perception.chain import ChainState
-from perception.pose import roll_pitch
-from perception.rotation import quat_from_matrix
+from perception.geometry.chain import ChainState
+from perception.geometry.pose import roll_pitch
+from perception.geometry.rotation import quat_from_matrix
 from tests.perception.synthetic import Scene, background_e, marker_electrons, observed, sequence, spot
 
 LEAST_OUTLINE = 3  # frames without an LED, of which the geometric tier makes an outline
@@ -150,7 +150,7 @@ class Robot:
 
     def predicted(self, off_m=(0.0, 0.0), off_heading=0.0, sigma_m=0.02, sigma_heading=0.05) -> PoseEstimate:
         """A prediction that is off by this much."""
-        from perception.rotation import rot_z
+        from perception.geometry.rotation import rot_z
 
         body = self.state.site_body
         x, y, z = body.position_m

@@ -13,11 +13,11 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 from scipy.special import erf
 
-from executive.rig import RigCalibration
-from perception.body import Transform
-from perception.chain import Chain, ChainState
-from perception.follow_up import pointing_at
-from perception.rotation import exp_map
+from executive.core.rig import RigCalibration
+from perception.geometry.body import Transform
+from perception.geometry.chain import Chain, ChainState
+from perception.geometry.follow_up import pointing_at
+from perception.geometry.rotation import exp_map
 from tests.perception.sensor.noise import with_noise
 
 FULL_WELL_E, BACKGROUND, READ_E, BITS = 160_000.0, 0.40, 40.0, 10

@@ -11,9 +11,9 @@ from functools import cache
 import cv2
 import numpy as np
 
-from executive.types import Window
-from perception.codes import lit
-from perception.psf import marker_spread
+from executive.core.types import Window
+from perception.frames.codes import lit
+from perception.frames.psf import marker_spread
 from tests.perception.sensor.noise import with_noise
 from tests.perception.synthetic import (
     BITS,

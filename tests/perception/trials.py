@@ -6,16 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from perception.chain import ChainState
-from perception.choice import Choice
-from perception.difference import difference, led_sequence, pair_weights
-from perception.fisher import centre_bound, pose_bound
-from perception.markers import find_markers
-from perception.plausibility import choose
-from perception.pose import roll_pitch
-from perception.psf import marker_spread
-from perception.rotation import log_map
-from perception.similarity import compare
+from perception.frames.difference import difference, led_sequence, pair_weights
+from perception.frames.psf import marker_spread
+from perception.frames.similarity import compare
+from perception.geometry.chain import ChainState
+from perception.geometry.pose import roll_pitch
+from perception.geometry.rotation import log_map
+from perception.markers.centres import find_markers
+from perception.markers.choice import Choice
+from perception.markers.fisher import centre_bound, pose_bound
+from perception.markers.plausibility import choose
 from tests.perception.synthetic import (
     GAIN_E,
     Scene,

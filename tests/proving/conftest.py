@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from executive.app import RunOptions, run
+from executive.run.app import RunOptions, run
 from proving.engine import Case, Limits
 
 PLANTED = Path(__file__).with_name("planted")

@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from executive.cli import invoke
-from executive.errors import RecordError
+from executive.core.errors import RecordError
 from proving.campaign_report import write_campaign_report
 from proving.campaign_report.alarms import alarms
 from proving.campaign_report.comparison import comparisons
@@ -15,9 +15,9 @@ from proving.campaign_report.groups import by_fault, ends, success
 from proving.campaign_report.listing import rows
 from proving.campaign_report.parameters import varied
 from proving.campaign_report.worst import ranked, story
+from tests.executive.record.synthetic import make_run
+from tests.executive.report.test_report import parsed
 from tests.proving.campaigns import ON_S, SETTINGS, Told, fault
-from tests.record.synthetic import make_run
-from tests.record.test_report import parsed
 
 LED = fault("led_off", "marker_lost", "marker_lost")
 MISSED = fault("led_off", None, "marker_lost")

@@ -7,11 +7,11 @@ import json
 import pytest
 
 from executive.cli import invoke
-from executive.errors import ConfigError, RecordError
-from executive.nodes import LEAVES
-from executive.telemetry import events
-from executive.telemetry.history import At
+from executive.core.errors import ConfigError, RecordError
+from executive.record import events
+from executive.record.history import At
 from executive.tree.load import load_tree_text
+from executive.tree.nodes import LEAVES
 from proving.coverage.abilities import takes_time
 from proving.coverage.command import coverage as command_line
 from proving.coverage.coverage import cover

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from executive import plugins
-from executive.app import RunOptions, run
+from executive.core import plugins
+from executive.run.app import RunOptions, run
 from proving.coverage.bases import candidates
 from proving.coverage.coverage import cover
 from proving.coverage.fill import file_name, needed

@@ -7,9 +7,9 @@ import json
 import pytest
 import yaml
 
-from executive.app import RunOptions, run
-from executive.errors import ConfigError
-from executive.scenario import resolve_scenario
+from executive.core.errors import ConfigError
+from executive.run.app import RunOptions, run
+from executive.run.scenario import resolve_scenario
 from proving.engine import Case, CaseClass, Ending
 from proving.minimise.command import minimise as command_line
 from proving.minimise.failure import Failure, failure_of
@@ -23,8 +23,8 @@ from dataclasses import dataclass
 
 from pydantic import BaseModel
 
-from executive.faults import Fault, FaultSpec
-from executive.types import Outcome, Reason
+from executive.inject.faults import Fault, FaultSpec
+from executive.core.types import Outcome, Reason
 
 ACTIVE = set()
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from executive.config.source import read_text
-from executive.errors import ConfigError
-from executive.pool_plugins import load_strategies
+from executive.core.errors import ConfigError
 from executive.tree.catalogue import node_types
 from executive.tree.load import load_tree
+from executive.tree.strategies import load_strategies
 from proving.mutation.command import mutate as command_line
 from proving.mutation.equivalents import Equivalents, read_equivalents
 from proving.mutation.mutants import Forest, Mutant, changed, dumped

@@ -5,20 +5,31 @@ import math
 import numpy as np
 import pytest
 
-from executive import plugins
-from executive.backends import BackendRequest
-from executive.errors import LongarmError
-from executive.faults import FaultSpec
-from executive.ports import LocaliseRequest
-from executive.prediction import quat_from_heading_tilt
-from executive.rig import RigCalibration
+from executive.config.backends import BackendRequest
+from executive.core import plugins
+from executive.core.errors import LongarmError
+from executive.core.ports import LocaliseRequest
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    Point,
+    PoseEstimate,
+    Quality,
+    Segment,
+    Source,
+)
+from executive.inject.faults import FaultSpec
+from executive.isc.prediction import quat_from_heading_tilt
 from executive.testing.fake import FakeBackend, FakeWorld
-from executive.types import Point, PoseEstimate, Quality, Segment, Source
-from perception.localizer import LedStereoLocalizer
+from perception.localizer.localizer import LedStereoLocalizer
 from sim_pybullet import BACKEND
 from sim_pybullet.config import WorldConfig
 from sim_pybullet.path import ahead_on
-from tests.sim.worlds import AHEAD, heading, plain, travel
+from tests.sim_pybullet.worlds import (
+    AHEAD,
+    heading,
+    plain,
+    travel,
+)
 
 pytestmark = pytest.mark.sim
 

@@ -10,24 +10,29 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from executive.assembly import prior_pose
-from executive.backends import BackendRequest
-from executive.classification import Classification
-from executive.clock import Stopwatch
+from executive.config.backends import BackendRequest
 from executive.config.source import read_text
-from executive.journal import RunJournal
-from executive.nodes.base import Leaf
-from executive.nodes.services import Services
-from executive.pool import Choice, Pool, Situation, Strategy
-from executive.pool_plugins import load_strategies, strategy_trees
-from executive.ports import LocaliseRequest
-from executive.runner import Run, RunEnd, execute
-from executive.scenario import ResolvedScenario, as_scenario, resolve
-from executive.telemetry.recorder import Recorder
+from executive.core.clock import Stopwatch
+from executive.core.ports import LocaliseRequest
+from executive.core.types import Outcome, Quality, Reason
+from executive.isc.classification import Classification
+from executive.pool.pool import (
+    Choice,
+    Pool,
+    Situation,
+    Strategy,
+)
+from executive.record.journal import RunJournal
+from executive.record.recorder import Recorder
+from executive.run.assembly import prior_pose
+from executive.run.runner import Run, RunEnd, execute
+from executive.run.scenario import ResolvedScenario, as_scenario, resolve
 from executive.testing import FakeBackend, OverheadLocalizer
 from executive.tree.build import BuiltTree, build
+from executive.tree.nodes.base import Leaf
+from executive.tree.nodes.services import Services
 from executive.tree.spec import TreeSpec
-from executive.types import Outcome, Quality, Reason
+from executive.tree.strategies import load_strategies, strategy_trees
 
 STEPS, ASIDE_M = 11, (0.008, -0.008)
 """Short legs to and fro: eleven segments, so that what is done once a segment is done more than ten times."""

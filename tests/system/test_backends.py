@@ -8,16 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from executive import plugins
-from executive.backends import BackendRequest, BackendSpec
 from executive.cli import invoke
-from executive.nodes.base import Direction
-from executive.pool import Strategy
-from executive.pool_plugins import load_strategies, strategy_trees
-from executive.rig import RigCalibration
+from executive.config.backends import BackendRequest, BackendSpec
+from executive.core import plugins
+from executive.core.rig import RigCalibration
+from executive.core.types import Point, Segment
+from executive.pool.pool import Strategy
 from executive.testing import check_backend, check_strategy
 from executive.tree.load import load_tree
-from executive.types import Point, Segment
+from executive.tree.nodes.base import Direction
+from executive.tree.strategies import load_strategies, strategy_trees
 from tests.system.bench import Setting
 
 ROOT = Path(__file__).resolve().parents[2]

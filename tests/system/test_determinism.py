@@ -28,7 +28,14 @@ def digest_of(folder: Path, seed: int, tier: str, out: str, hash_seed: str, thre
     folder.mkdir(exist_ok=True)
     file = folder / "hop.yaml"
     file.write_text(MISSION)
-    command = [sys.executable, "-c", "from executive.cli import main; main()", "run", str(file), "--json"]
+    command = [
+        sys.executable,
+        "-c",
+        "from executive.cli import main; main()",
+        "run",
+        str(file),
+        "--json",
+    ]
     command += ["--seed", str(seed), "--tier", tier, "--out", out]
     environment = os.environ | {"PYTHONHASHSEED": hash_seed, "PYTHONPATH": str(ROOT)}
     environment |= {"OPENBLAS_NUM_THREADS": threads}

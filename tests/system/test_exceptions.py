@@ -11,14 +11,14 @@ from typing import Any
 import pytest
 
 from executive.cli import invoke
-from executive.errors import NodeRaised
-from executive.nodes import LEAVES
-from executive.nodes.base import Leaf
-from executive.pool import Pool
-from executive.runner import Run
-from executive.telemetry import History, events
-from executive.telemetry.reader import is_complete
+from executive.core.errors import NodeRaised
+from executive.pool.pool import Pool
+from executive.record import History, events
+from executive.record.reader import is_complete
+from executive.run.runner import Run
 from executive.testing import FakeBackend
+from executive.tree.nodes import LEAVES
+from executive.tree.nodes.base import Leaf
 from tests.system.bench import SETTINGS, Broken, Ended, Sabotage, Setting, run
 
 TICKS = (1, 2, 10)
@@ -301,7 +301,7 @@ def test_a_defect_of_the_report_keeps_the_record_and_a_traceback(
     def broken(*args: object) -> None:
         raise Broken("cannot be drawn")
 
-    monkeypatch.setattr("executive.app.write_report", broken)
+    monkeypatch.setattr("executive.run.app.write_report", broken)
     assert invoke(["run", "short.yaml", "--out", "out", "--quiet"]) == 3
     assert "longarm: a defect: Broken: cannot be drawn" in capsys.readouterr().err
     assert "Broken: cannot be drawn" in (folder / "out" / "traceback.txt").read_text()

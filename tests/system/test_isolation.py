@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from py_trees.common import Status
 
-from executive.nodes.base import Slot
+from executive.tree.nodes.base import Slot
 from tests.system.bench import Diary, Setting, prepare
 
 ROOT = Path(__file__).resolve().parents[2]

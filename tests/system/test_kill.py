@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from executive.cli import invoke
-from executive.scenario import resolve_scenario
-from executive.telemetry import History, events, read_record
-from executive.telemetry.reader import is_complete
+from executive.record import History, events, read_record
+from executive.record.reader import is_complete
+from executive.run.scenario import resolve_scenario
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -38,7 +38,14 @@ def under_way(process: subprocess.Popen[bytes], for_s: float) -> None:
 def killed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, float]:
     """The folder of a run killed in the middle, and the mission time seen a wall second before."""
     folder = tmp_path_factory.mktemp("killed") / "out"
-    command = [sys.executable, "-c", "from executive.cli import main; main()", "run", "--tier", "geometric"]
+    command = [
+        sys.executable,
+        "-c",
+        "from executive.cli import main; main()",
+        "run",
+        "--tier",
+        "geometric",
+    ]
     command += [str(ROOT / "missions" / "first_traverse.yaml"), "--quiet", "--out", str(folder)]
     process = subprocess.Popen(command, cwd=folder.parent, env=os.environ | {"PYTHONPATH": str(ROOT)})
     try:

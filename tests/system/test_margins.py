@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from executive.app import RunOptions, run
+from executive.run.app import RunOptions, run
 
 MISSION = Path(__file__).parents[2] / "missions" / "first_traverse.yaml"
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from executive.app import RunOptions, run
+from executive.run.app import RunOptions, run
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "marsyard.yaml"
 MODEL = SCENARIO.parent / "../../shared/reference/dem/marsyard2021.tif"

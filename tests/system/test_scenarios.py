@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from docs.list_scenarios import PAGE, lesson, page
-from executive import plugins
+from executive.core import plugins
 from proving.suite.collect import collect
 from proving.suite.run import SuiteOptions, run_suite
 

@@ -10,15 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.rig import RigCalibration
-from perception.body import Transform
+from executive.core.rig import RigCalibration
 from perception.calibration import Landmark, Look, PointImages, RoverImages, Station, Survey, changed_rig
-from perception.chain import Chain, ChainState
-from perception.exposure import filter_snr_per_pair, pairs_needed, view_of
-from perception.fisher import centre_bounds
-from perception.follow_up import pointing_at
-from perception.pose import roll_pitch
-from perception.rotation import exp_map
+from perception.frames.exposure import filter_snr_per_pair, pairs_needed, view_of
+from perception.geometry.body import Transform
+from perception.geometry.chain import Chain, ChainState
+from perception.geometry.follow_up import pointing_at
+from perception.geometry.pose import roll_pitch
+from perception.geometry.rotation import exp_map
+from perception.markers.fisher import centre_bounds
 
 FLOOR_PX = 0.02  # what no centre is better than: lens and flat field
 MATCH_PX = 0.15

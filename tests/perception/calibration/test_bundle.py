@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from executive.types import Centres, HeadReading, Shot
+from executive.core.types import Centres, HeadReading, Shot
 from perception.calibration import NAMES, Look, calibrate, changed_rig
 from perception.calibration.bundle import Bundle
 from perception.calibration.parameters import prior_sigmas
 from perception.calibration.sightings import Sightings
 from perception.calibration.start import first_guess
 from perception.calibration.unknowns import Bearing, turn_rate
-from perception.chain import Chain
-from perception.rotation import exp_map
+from perception.geometry.chain import Chain
+from perception.geometry.rotation import exp_map
 from tests.perception.calibration.field import BELIEVED, Field, survey
-from tests.perception.test_geometry import BENT_RIG
+from tests.perception.geometry.test_geometry import BENT_RIG
 
 TINY = Field(
     stations=((2.0, -0.2), (3.0, 0.2)),

@@ -9,8 +9,8 @@ from scipy.stats import chi2
 
 from perception.calibration import NAMES, Survey, calibrate, changed_rig
 from perception.calibration.parameters import prior_sigmas
-from perception.chain import Chain
-from perception.pose import Sighting, estimate
+from perception.geometry.chain import Chain
+from perception.geometry.pose import Sighting, estimate
 from tests.perception.calibration.field import BELIEVED, DEGREE, Field, rover_at, survey
 
 SMALL = Field(

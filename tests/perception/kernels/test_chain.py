@@ -5,15 +5,27 @@ import pytest
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
-from executive.rig import RigCalibration
-from perception.chain import Chain
+from executive.core.rig import RigCalibration
+from perception.geometry.chain import Chain
+from perception.geometry.pose import (
+    Prior,
+    Readings,
+    Sighting,
+    estimate,
+    linear_guess,
+    roll_pitch,
+)
+from perception.geometry.rotation import (
+    exp_map,
+    log_map,
+    nearest_rotation,
+    quat_from_matrix,
+)
 from perception.kernels.compiled import plain
 from perception.kernels.gauss_newton import Problem, normal_equations, weights_of
 from perception.kernels.linear import inverted
-from perception.pose import Prior, Readings, Sighting, estimate, linear_guess, roll_pitch
-from perception.rotation import exp_map, log_map, nearest_rotation, quat_from_matrix
+from tests.perception.geometry.test_geometry import BENT_RIG, TURNED_RIG
 from tests.perception.synthetic import scene
-from tests.perception.test_geometry import BENT_RIG, TURNED_RIG
 
 RIGS = [RigCalibration(), BENT_RIG, TURNED_RIG]
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from perception.frames.psf import Spread
 from perception.kernels.frames import equalised, mean_and_range
 from perception.kernels.lattice import add_pattern, best_shifts
 from perception.kernels.light import joined, local_fits
-from perception.psf import Spread
 from tests.perception.synthetic import spot
 
 SPREAD = Spread(0.8, 0.6)

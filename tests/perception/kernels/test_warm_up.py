@@ -6,7 +6,7 @@ import sys
 PROGRAM = """
 from perception.kernels.chain import project
 from perception.kernels.gauss_newton import gauss_newton
-from perception.localizer import LedStereoLocalizer
+from perception.localizer.localizer import LedStereoLocalizer
 assert not project.signatures and not gauss_newton.signatures
 LedStereoLocalizer.preload()
 assert project.signatures and gauss_newton.signatures

@@ -13,7 +13,7 @@ import duckdb
 import pytest
 
 from executive.cli import invoke
-from executive.telemetry.recorder import Recorder
+from executive.record.recorder import Recorder
 from proving.campaign.command import _default_folder
 from proving.campaign.folder import CampaignFolder, read_journal
 
@@ -118,7 +118,13 @@ def test_a_killed_supervisor_loses_nothing_and_repeats_nothing(write, planted, t
     """Of nine cases one crashes, one hangs, one eats memory, and the supervisor is killed in the middle."""
     grid = [[], fault("segfault"), [], fault("hang"), [], fault("eat_memory"), [], [], []]
     file, out = write(grid={"faults": grid}, runs=1, limits=LIMITS), tmp_path / "out"
-    command = [sys.executable, "-c", "from executive.cli import main; main()", "campaign", str(file)]
+    command = [
+        sys.executable,
+        "-c",
+        "from executive.cli import main; main()",
+        "campaign",
+        str(file),
+    ]
     command += ["--out", str(out), "-j", "2", "--quiet"]
     path = os.pathsep.join([str(ROOT), *(p for p in sys.path if p)])
     first = subprocess.Popen(command, env=os.environ | {"PYTHONPATH": path})

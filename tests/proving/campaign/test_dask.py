@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from executive import app
 from executive.cli import invoke
+from executive.run import app
 from proving.campaign.cases import case_number, resolved
 from proving.campaign.file import load_campaign
 from proving.campaign.folder import read_journal

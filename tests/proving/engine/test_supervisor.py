@@ -9,7 +9,7 @@ from contextlib import closing
 
 import pytest
 
-from executive import app
+from executive.run import app
 from proving.engine import CaseClass, run_cases, settle
 from proving.engine.server import ForkServer
 from proving.engine.supervisor import run_alone

@@ -7,11 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from executive.backends import BackendRequest
-from executive.faults import Cue, Fault
-from executive.rig import RigCalibration
+from executive.config.backends import BackendRequest
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    Centres,
+    HeadReading,
+    Images,
+    Outcome,
+    Point,
+    Reason,
+    Segment,
+    Shot,
+    Window,
+)
+from executive.inject.faults import Cue, Fault
 from executive.testing.fake import FakeBackend, FakeWorld
-from executive.types import Centres, HeadReading, Images, Outcome, Point, Reason, Segment, Shot, Window
 
 ROUTE = (Segment(Point(3.0, 0.0), Point(4.0, 0.0), 0.03, 0.25, 0.03),)
 SHOT = Shot((0, 1, 2, 4, 8))

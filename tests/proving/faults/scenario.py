@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from executive.app import Finished, RunOptions
-from executive.app import run as run_file
 from executive.cli import invoke
-from executive.telemetry import History, events
-from executive.telemetry.reader import is_complete
+from executive.record import History, events
+from executive.record.reader import is_complete
+from executive.run.app import Finished, RunOptions
+from executive.run.app import run as run_file
 from executive.testing import FakeBackend
 
 HEAD = {

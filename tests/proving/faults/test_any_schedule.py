@@ -8,8 +8,8 @@ from typing import Any
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from executive import plugins
-from executive.faults import FaultSpec
+from executive.core import plugins
+from executive.inject.faults import FaultSpec
 from tests.proving.faults.scenario import run
 
 OUTCOMES = {"reached", "safe_hold", "help", "time_limit", "invalid", "error"}

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from executive.types import Reason, Shot
+from executive.core.types import Reason, Shot
 from proving.faults.cameras import (
     CameraDead,
     FrozenFrame,

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from executive.ports import LocaliseRequest
+from executive.core.ports import LocaliseRequest
+from executive.core.types import PoseEstimate, Quality, Source
 from executive.testing import OverheadLocalizer
-from executive.types import PoseEstimate, Quality, Source
 from proving.faults.estimation import (
     Bias,
     InclinometerBias,

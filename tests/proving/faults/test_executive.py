@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from executive.telemetry import History, events
-from executive.telemetry.reader import is_complete
-from executive.types import PoseEstimate, Source
+from executive.core.types import PoseEstimate, Source
+from executive.record import History, events
+from executive.record.reader import is_complete
 from tests.proving.faults.scenario import complaint, run, write
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -199,7 +199,14 @@ def test_what_is_not_there_cannot_be_faulty(tmp_path, capsys):
 
 def test_a_killed_process_has_written_down_that_it_would_be(tmp_path):
     file = write(tmp_path, {"process_killed": {}, **EARLY})
-    command = [sys.executable, "-c", "from executive.cli import main; main()", "run", str(file), "--quiet"]
+    command = [
+        sys.executable,
+        "-c",
+        "from executive.cli import main; main()",
+        "run",
+        str(file),
+        "--quiet",
+    ]
     command += ["--out", str(tmp_path / "run")]
     paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     done = subprocess.run(command, env=os.environ | {"PYTHONPATH": paths}, check=False)

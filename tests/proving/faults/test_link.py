@@ -4,8 +4,8 @@ from dataclasses import dataclass, field, replace
 
 import pytest
 
-from executive.clock import Clock
-from executive.types import Call, Outcome, Reason
+from executive.core.clock import Clock
+from executive.core.types import Call, Outcome, Reason
 from proving.faults.altered import Unanswered
 from proving.faults.link import (
     Corruption,

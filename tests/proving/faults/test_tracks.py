@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from executive.types import Reason
+from executive.core.types import Reason
 from proving.faults.parameters import OneTrack
 from proving.faults.tracks import (
     CurrentsGarbage,

@@ -1,0 +1,264 @@
+"""The `longarm` command. Thin: it parses arguments, calls, prints, and turns errors into exit codes.
+
+0 good, 1 ended otherwise or problems found, 2 bad input or usage, 3 a defect.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import click
+
+from executive.cli.command_group import CommandGroup
+from executive.core.errors import LongarmError
+
+DEFECT = 3
+
+
+def main() -> None:
+    """Entry point: everything that goes wrong ends in an exit code and words, never in a bare traceback."""
+    sys.exit(invoke(sys.argv[1:]))
+
+
+def invoke(arguments: list[str]) -> int:
+    """Run the command line; the exit code."""
+    try:
+        code = cli.main(args=arguments, prog_name="longarm", standalone_mode=False)
+    except click.exceptions.Exit as error:
+        return error.exit_code
+    except click.exceptions.Abort:
+        click.echo("longarm: interrupted", err=True)
+        return 1
+    except click.ClickException as error:
+        error.show()
+        return 2
+    except LongarmError as error:
+        click.echo(str(error), err=True)
+        return 2
+    except Exception as error:  # a defect: one line, the run folder has the traceback
+        place = _deepest(error)
+        words = " ".join(str(error).split())
+        click.echo(f"longarm: a defect: {type(error).__name__}: {words} ({place})", err=True)
+        return DEFECT
+    return code if isinstance(code, int) else 0
+
+
+def _deepest(error: BaseException) -> str:
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    if trace is None:
+        return "no traceback"
+    return f"{Path(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno}"
+
+
+@click.group(cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"]})
+def cli() -> None:
+    """Longarm: a rover led by its lander's stereo head, run by a behaviour tree.
+
+    Example: longarm run missions/first_traverse.yaml
+    """
+
+
+FILE = click.Path(path_type=Path)
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@click.option("--seed", type=int, help="Replace the scenario's seed.")
+@click.option("--out", type=FILE, help="Where to write the run folder.")
+@click.option(
+    "--tier", type=click.Choice(["full", "geometric"]), help="Images, or their measured error model."
+)
+@click.option(
+    "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Replace one value of the scenario."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print result.json and nothing else.")
+@click.option("--quiet", is_flag=True, help="Print nothing.")
+def run(
+    file: Path,
+    seed: int | None,
+    out: Path | None,
+    tier: str | None,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    quiet: bool,
+) -> int:
+    """Run a scenario or a mission file and write its run folder.
+
+    Example: longarm run missions/first_traverse.yaml --seed 3 --set "world.light.sun_elevation=20 deg"
+    """
+    from executive.cli import summary
+    from executive.run import app
+
+    finished = app.run(file, app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json)))
+    if as_json:
+        click.echo(json.dumps(finished.result, indent=2))
+    elif not quiet:
+        summary.show(finished)
+    if finished.exit_code == DEFECT:
+        where = finished.folder / "traceback.txt"
+        click.echo(f"longarm: a defect: {finished.result['reason']} ({where})", err=True)
+    return finished.exit_code
+
+
+@cli.command()
+@click.argument("folder", type=FILE)
+def report(folder: Path) -> int:
+    """Write the self-contained report.html of a run or campaign folder anew, from its record.
+
+    Example: longarm report runs/first_traverse-7
+    """
+    from executive.run import app
+
+    click.echo(app.report(folder))
+    return 0
+
+
+@cli.command()
+@click.argument("run_dir", type=FILE)
+@click.option("--at", metavar="TIME", help="Mission time such as '12 min' or 720; the end by default.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def explain(run_dir: Path, at: str | None, as_json: bool) -> int:
+    """Say why: the chain from leaf to root, hypotheses with weights, what was tried and why that.
+
+    Example: longarm explain runs/marker_out-7 --at "20 min"
+    """
+    from executive.report import explain as explaining
+
+    found = explaining.explain(run_dir, at)
+    if as_json:
+        click.echo(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
+    else:
+        click.echo(explaining.as_text(found), nl=False)
+    return 0
+
+
+@cli.command()
+@click.argument("files", nargs=-1, required=True, type=FILE)
+@click.option("--format", "form", type=click.Choice(["text", "json", "sarif"]), default="text")
+@click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
+def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
+    """Analyse trees, missions, scenarios and campaigns without running them; print every problem.
+
+    Example: longarm check trees/*.yaml missions/*.yaml --format sarif
+    """
+    from executive.run import check as checking
+
+    missing = [file for file in files if not file.is_file()]
+    for file in missing:
+        click.echo(
+            f"{file}:1:1: {'got a folder, expected a file' if file.is_dir() else 'no such file'}", err=True
+        )
+    if missing:
+        return 2
+    problems = sorted({problem for file in files for problem in checking.check_file(file)})
+    click.echo(checking.written(problems, "json" if as_json else form), nl=False)
+    return 1 if problems else 0
+
+
+@cli.command()
+@click.argument("tree")
+@click.option("--format", "form", default="unicode", show_default=True, help="How to draw.")
+@click.option("-o", "--output", type=FILE, help="Write to this file instead of stdout.")
+def show(tree: str, form: str, output: Path | None) -> int:
+    """Draw a tree, by name or path, or a run's tree with its outcomes, by run folder.
+
+    Formats: unicode, dot, svg, png, mermaid, html, groot.
+
+    Example: longarm show navigate --format svg -o navigate.svg
+    """
+    from executive.config.validate import guess, listed
+    from executive.report.show import FORMATS, draw
+    from executive.run import app
+    from executive.tree.load import load_tree
+    from executive.tree.strategies import load_strategies, strategy_trees
+
+    if form not in FORMATS:
+        raise click.UsageError(f'got "{form}", expected {listed(FORMATS)}{guess(form, FORMATS)}')
+    path = Path(tree)
+    if (path / "record.mcap").is_file():
+        drawing = app.draw_run(path, form)
+    else:
+        spec = load_tree(path if path.is_file() or "/" in tree else tree)
+        drawing = draw(spec, form, strategy_trees(load_strategies()))
+    content = drawing if isinstance(drawing, bytes) else drawing.encode()
+    if output is not None:
+        output.write_bytes(content)
+    else:
+        click.echo(content, nl=False)
+    return 0
+
+
+@cli.command("import")
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, default=Path("trees"), show_default=True, help="Where to write.")
+@click.option("--force", is_flag=True, help="Replace files that are there already.")
+def import_(file: Path, output: Path, force: bool) -> int:
+    """Turn BehaviorTree.CPP v4 XML into tree files, one a tree; what reads a little differently is told.
+
+    Example: longarm import mission.xml -o trees
+    """
+    from executive.cli import importing
+
+    imported = importing.import_file(file)
+    for path in importing.write_trees(imported.trees, output, force):
+        click.echo(path)
+    for note in imported.notes:
+        click.echo(f"{note.file}:{note.line}:{note.column}: note: {note.message}", err=True)
+    return 0
+
+
+def _catalogue(kind: str, example: str) -> None:
+    about = f"List the {kind}, or one of them in full.\n\nExample: longarm {kind} {example}"
+
+    @cli.command(kind, help=about)
+    @click.argument("name", required=False)
+    @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+    def command(name: str | None, as_json: bool) -> int:
+        from executive.config.validate import guess, listed
+        from executive.run import listing
+
+        entries = listing.entries(kind)
+        if name is not None and name not in entries:
+            known = sorted(entries)
+            raise click.UsageError(f'got "{name}", expected {listed(known) or "nothing"}{guess(name, known)}')
+        chosen = entries if name is None else {name: entries[name]}
+        if as_json:
+            click.echo(json.dumps(chosen, indent=2, ensure_ascii=False))
+        elif name is not None:
+            click.echo(listing.as_text(name, chosen[name]), nl=False)
+        else:
+            width = max((len(entry) for entry in chosen), default=0)
+            for entry, told in chosen.items():
+                click.echo(f"{entry:{width}}  {told.get('doc', '')}")
+        return 0
+
+
+for _kind, _example in (
+    ("nodes", "wait"),
+    ("strategies", "back_off"),
+    ("faults", "led_off"),
+    ("backends", "pybullet --json"),
+):
+    _catalogue(_kind, _example)
+
+
+@cli.command()
+@click.argument("kind")
+def schema(kind: str) -> int:
+    """Print the JSON Schema of a kind of file, for editors: tree, mission, scenario or campaign.
+
+    Example: longarm schema tree > tree.schema.json
+    """
+    from executive.config.validate import guess, listed
+    from executive.run import schema as schemas
+
+    if kind not in schemas.kinds():
+        raise click.UsageError(
+            f'got "{kind}", expected {listed(schemas.kinds())}{guess(kind, schemas.kinds())}'
+        )
+    click.echo(json.dumps(schemas.schema(kind), indent=2, ensure_ascii=False))
+    return 0

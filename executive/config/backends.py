@@ -1,0 +1,65 @@
+"""What a simulation or a robot registers under `longarm.backends`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import BaseModel
+
+from executive.config.source import Place
+from executive.core.ports import Backend
+from executive.core.rig import RigCalibration
+from executive.core.types import Segment
+
+
+@dataclass(frozen=True)
+class BackendRequest:
+    """All that a backend is told: nothing of the tree, nothing of the expectations.
+
+    `world` is an instance of the backend's own `world_model`; `route` is the plan as ground uplinked it;
+    `truth_path` is where a simulation writes its truth (None: nowhere); `tick_s` the length of a tick [s].
+    """
+
+    world: BaseModel
+    route: tuple[Segment, ...]
+    seed: int
+    tier: str
+    rig: RigCalibration
+    truth_path: Path | None
+    tick_s: float
+
+
+@dataclass(frozen=True)
+class WorldProblem:
+    """Why a well-formed world cannot be made; `place` are the keys, seen from `world`, that say so."""
+
+    place: Place
+    message: str
+
+
+def no_problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldProblem, ...]:
+    """The `problems` of a backend that can make every world its schema allows."""
+    return ()
+
+
+def nothing_to_load() -> None:
+    """The `preload` of a backend that is all there once it is registered."""
+
+
+@dataclass(frozen=True)
+class BackendSpec:
+    """A backend by name: its world's schema, the tiers it can play, and how to make one.
+
+    `problems` tells, before anything is made or written, why a world cannot be made for a route. `preload`
+    imports what `create` needs, for a process that is about to make many.
+    """
+
+    name: str
+    doc: str
+    world_model: type[BaseModel]
+    tiers: tuple[str, ...]
+    create: Callable[[BackendRequest], Backend]
+    problems: Callable[[BaseModel, tuple[Segment, ...]], tuple[WorldProblem, ...]] = no_problems
+    preload: Callable[[], None] = nothing_to_load

@@ -1,0 +1,64 @@
+"""The types that ports carry: a name, a Python type, and a dimension where it has one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from executive.core.types import (
+    Point,
+    PoseEstimate,
+    Quality,
+    Segment,
+)
+
+T_co = TypeVar("T_co", covariant=True)
+
+
+@dataclass(frozen=True)
+class ValueType(Generic[T_co]):
+    """A port type. `unit` is the SI unit of a dimensioned number (files must then carry a unit).
+
+    `literal` says whether a file may give it as a literal; the rest flows between nodes only.
+    """
+
+    name: str
+    python: type[T_co]
+    unit: str | None = None
+    literal: bool = True
+
+
+LENGTH = ValueType("length", float, "m")
+ANGLE = ValueType("angle", float, "rad")
+DURATION = ValueType("duration", float, "s")
+SPEED = ValueType("speed", float, "m/s")
+FORCE = ValueType("force", float, "N")
+NUMBER = ValueType("number", float)
+INTEGER = ValueType("integer", int)
+FLAG = ValueType("flag", bool)
+TEXT = ValueType("text", str)
+QUALITY = ValueType("Quality", Quality)
+POINT = ValueType("Point", Point, literal=False)
+POSE = ValueType("PoseEstimate", PoseEstimate, literal=False)
+SEGMENT = ValueType("Segment", Segment, literal=False)
+ROUTE: ValueType[tuple[Segment, ...]] = ValueType("Route", tuple, literal=False)
+
+VALUE_TYPES: dict[str, ValueType[object]] = {
+    t.name: t
+    for t in (
+        LENGTH,
+        ANGLE,
+        DURATION,
+        SPEED,
+        FORCE,
+        NUMBER,
+        INTEGER,
+        FLAG,
+        TEXT,
+        QUALITY,
+        POINT,
+        POSE,
+        SEGMENT,
+        ROUTE,
+    )
+}

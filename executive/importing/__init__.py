@@ -1,6 +1,0 @@
-"""BehaviorTree.CPP v4 XML → tree files of this project."""
-
-from executive.importing.trees import Imported, import_file
-from executive.importing.written import tree_text, write_trees
-
-__all__ = ["Imported", "import_file", "tree_text", "write_trees"]

@@ -1,0 +1,1 @@
+"""In-situ classification: predict, compare, weigh hypotheses, extrapolate (paper, section 3.2)."""

@@ -1,0 +1,202 @@
+"""What the commands do: put a run together, run it, and leave a complete run folder behind."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast
+
+from executive.config.backends import BackendRequest
+from executive.config.expect import Expect
+from executive.core import plugins
+from executive.core.clock import Stopwatch
+from executive.core.errors import LongarmError, RecordError
+from executive.core.one_thread import one_thread
+from executive.judge.expectations import judge
+from executive.judge.safety import safety_rows
+from executive.pool.pool import Strategy
+from executive.record import History, digest, events
+from executive.record.recorder import Recorder
+from executive.record.result import RunFigures, summary_of, write_result
+from executive.record.run_folder import (
+    RUN_FILES,
+    free_folder,
+    make_folder,
+    unwrite,
+    write_traceback,
+)
+from executive.report import write_report
+from executive.report.show import draw
+from executive.run.assembly import TICK_S, set_up, write_start
+from executive.run.progress import progress_bar
+from executive.run.runner import RunEnd, ended_by, execute
+from executive.run.scenario import ResolvedScenario, resolve_scenario
+from executive.tree.strategies import load_strategies, strategy_trees
+
+REACHED, OTHERWISE, DEFECT = 0, 1, 3
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What the command line may say about a run."""
+
+    seed: int | None = None
+    out: Path | None = None
+    tier: str | None = None
+    overrides: Sequence[str] = ()
+    bar: bool = True
+    report: bool = True
+    """Whether `report.html` is written; `longarm report` can do it later."""
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A run that ended: its folder, its result, and the exit code that stands for it."""
+
+    folder: Path
+    result: dict[str, Any]
+    exit_code: int
+    defect: BaseException | None = None
+
+
+def run(file: Path, options: RunOptions) -> Finished:
+    """Run a scenario or mission file. What a user can mend leaves nothing behind that was not there.
+
+    A defect ends the run, not the folder: record, result and report are complete and `traceback.txt` tells.
+    """
+    return run_scenario(resolve_scenario(file, options.seed, options.tier, options.overrides), options)
+
+
+def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
+    """The same for a scenario already resolved; of the options, those that change it are without effect."""
+    strategies = load_strategies()
+    localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
+    watch = Stopwatch()
+    folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
+    made = not folder.exists()
+    make_folder(folder)
+    for stale in RUN_FILES:
+        (folder / stale).unlink(missing_ok=True)
+    (folder / "scenario.yaml").write_text(scenario.dump())  # first, so that a run cut off can be repeated
+    try:
+        with one_thread():
+            end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
+    except LongarmError:
+        unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
+        raise
+    if end.defect is not None:
+        write_traceback(folder, end.defect)
+    try:
+        return _conclude(scenario, folder, end, watch, options.report)
+    except Exception as defect:
+        write_traceback(folder, defect)
+        raise
+
+
+def report(folder: Path) -> Path:
+    """(Re)write the report of a run or campaign folder from its record; RecordError where there is none."""
+    for name in plugins.found(plugins.REPORTERS):
+        if (folder / f"{name}.json").is_file():
+            reporter = cast("Callable[[Path], Path]", plugins.load(plugins.REPORTERS, name))
+            return reporter(folder)
+    if not (folder / "record.mcap").is_file():
+        raise RecordError(f"{folder}: got no record.mcap, expected a run or campaign folder")
+    return write_report(folder, _tree_svg(folder))
+
+
+def _execute(
+    scenario: ResolvedScenario,
+    strategies: tuple[Strategy, ...],
+    localizer: object,
+    folder: Path,
+    watch: Stopwatch,
+    bar: bool,
+) -> RunEnd:
+    route = scenario.mission.route()
+    request = BackendRequest(
+        world=scenario.world,
+        route=route,
+        seed=scenario.seed,
+        tier=scenario.tier,
+        rig=scenario.rig,
+        truth_path=folder / "truth.mcap",
+        tick_s=TICK_S,
+    )
+    with Recorder(folder / "record.mcap") as recorder:
+        write_start(recorder, scenario)
+        try:
+            prepared = set_up(scenario, strategies, localizer, request, recorder, watch)
+        except LongarmError:
+            raise
+        except Exception as defect:  # a plug-in that cannot even be made
+            end = ended_by(defect)
+            recorder.write(events.Stop(end.outcome, end.reason), 0.0)
+            return end
+        with progress_bar(scenario.name, sum(s.length_m for s in route), bar) as progress:
+            prepared.progress = progress
+            end = execute(prepared)
+    for part, spent in prepared.backend.wall_s().items():
+        watch.spent_s[part] += spent
+    return end
+
+
+def _conclude(
+    scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch, with_report: bool
+) -> Finished:
+    figures = RunFigures(
+        wall_s=round(watch.elapsed_s(), 3),
+        wall={part: round(spent, 3) for part, spent in sorted(watch.spent_s.items())},
+        waypoints_total=len(scenario.mission.waypoints),
+    )
+    result = judged(scenario, folder, figures)
+    write_result(folder / "result.json", result)
+    if with_report:
+        write_report(folder, _tree_svg(folder))
+    kept = json.loads((folder / "result.json").read_text())
+    return Finished(folder, kept, _exit_code(scenario.expect, result), end.defect)
+
+
+def judged(scenario: ResolvedScenario, folder: Path, figures: RunFigures) -> dict[str, Any]:
+    """The content of `result.json` from the records of a run, complete or cut off."""
+    record, truth = folder / "record.mcap", folder / "truth.mcap"
+    history, world = History.of(record), History.of(truth) if truth.is_file() else History.empty()
+    result = summary_of(history, world, digest(record), figures)
+    result["expectations"] = judge(scenario.expect, result, history, world)
+    result["safety"] = safety_rows(history, world, scenario.rig)
+    return result
+
+
+def _tree_svg(folder: Path) -> str | None:
+    """The run's tree with its outcomes; None where the scenario no longer resolves."""
+    try:
+        drawing = draw_run(folder, "svg")
+    except LongarmError:
+        return None
+    return drawing if isinstance(drawing, str) else None
+
+
+def draw_run(folder: Path, form: str) -> str | bytes:
+    """A run's tree in one of the drawing formats, coloured by how each node last ended."""
+    if not (folder / "scenario.yaml").is_file():
+        raise RecordError(f"{folder}: got no scenario.yaml, expected a run folder")
+    scenario = resolve_scenario(folder / "scenario.yaml")
+    return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
+
+
+def last_outcomes(folder: Path) -> dict[str, str]:
+    """The status with which each node last ended, by path."""
+    changes = History.of(folder / "record.mcap").all(events.NodeChange)
+    return {at.event.path: at.event.status for at in changes if at.event.status != "invalid"}
+
+
+def _exit_code(expect: Expect, result: Mapping[str, Any]) -> int:
+    """A scenario's expectations decide, and its safety; without any, whether the goal was reached."""
+    outcome, rows = result["outcome"], result["expectations"]
+    as_expected = all(row["met"] for row in rows) and all(row["met"] is not False for row in result["safety"])
+    if outcome == "error" and not (as_expected and outcome in expect.outcome):
+        return DEFECT
+    if outcome == "invalid" or not rows:
+        return REACHED if outcome == "reached" else OTHERWISE
+    return REACHED if as_expected else OTHERWISE

@@ -1,0 +1,196 @@
+"""The one loop: sense, tick, write what changed, let time pass; and rest in the end, whatever happens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from executive.core.clock import Stopwatch
+from executive.core.errors import NodeRaised
+from executive.core.ports import Backend
+from executive.core.types import Outcome, Reason
+from executive.record import events
+from executive.record.journal import RunJournal
+from executive.record.recorder import Recorder
+from executive.tree.nodes.base import Leaf, Trace
+from executive.tree.nodes.decorators import Guarded
+from executive.tree.nodes.services import Services
+
+TELEMETRY_PERIOD_S = 10.0
+SETTLING_S = 180.0  # as long as a belt may run on after its stop
+
+
+@dataclass(frozen=True)
+class RunEnd:
+    """How a run ended: one of `result.json`'s outcomes, why, and the defect if it was one.
+
+    `cut` says that a defect or the operator cut it short: what it proves or not is no question then.
+    """
+
+    outcome: str
+    reason: str | None
+    defect: BaseException | None = None
+    cut: bool = False
+
+
+@dataclass
+class Run:
+    """Everything that one run needs, made by the app."""
+
+    root: Behaviour
+    trace: Trace
+    paths: Mapping[str, Behaviour]
+    services: Services
+    backend: Backend
+    journal: RunJournal
+    recorder: Recorder
+    stopwatch: Stopwatch
+    time_limit_s: float
+    progress: Callable[[RunJournal, float], None] = lambda journal, now_s: None
+    each_tick: Callable[[], None] = lambda: None
+    invalid: Callable[[], str | None] = lambda: None
+    """Asked at the end: why the run proves nothing, None if it does."""
+
+
+def execute(run: Run) -> RunEnd:
+    """Run the tree to its end. Always: leaves terminated, rover at rest, stop written, record closed."""
+    end, changes = RunEnd("error", "the run was interrupted", cut=True), _Changes(run)
+    try:
+        end = _loop(run, changes)
+    except KeyboardInterrupt:
+        end = RunEnd("safe_hold", "interrupted by the operator", cut=True)
+    except Exception as defect:
+        end = ended_by(defect)
+    finally:
+        end = _rest(run, changes, end)
+    return end
+
+
+def ended_by(defect: BaseException) -> RunEnd:
+    """The end of a run that a defect cut short."""
+    return RunEnd("error", _one_line(defect), defect, cut=True)
+
+
+def _loop(run: Run, changes: _Changes) -> RunEnd:
+    watch = run.stopwatch
+    limit_ticks = run.services.clock.ticks_for(run.time_limit_s)
+    sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
+    while True:
+        with watch.measure("tick"):
+            now = run.services.classification.sense(run.services.devices)
+        run.each_tick()
+        with watch.measure("tick"):
+            run.root.tick_once()
+        with watch.measure("record"):
+            changes.write()
+            if run.services.clock.ticks % sample_ticks == 0:
+                predicted = run.services.classification.predicted()
+                run.journal.telemetry(now, run.services.devices, predicted)
+            run.recorder.flush()
+        if run.root.status is not Status.RUNNING:
+            return _ended(run)
+        if run.services.clock.ticks >= limit_ticks:
+            return RunEnd("time_limit", f"still under way after {run.time_limit_s:.0f} s")
+        with watch.measure("advance"):
+            run.backend.advance()
+        with suppress(Exception):  # who only looks on must not break the run
+            run.progress(run.journal, run.services.clock.now_s)
+
+
+def _ended(run: Run) -> RunEnd:
+    if run.root.status is Status.SUCCESS:
+        missed = run.journal.missed()
+        return RunEnd("safe_hold", missed) if missed else RunEnd("reached", None)
+    failure = run.trace.last_failure
+    reason = f"{failure[1].reason}: {failure[1].detail}" if failure else None
+    call = run.journal.called
+    if call is not None:
+        return RunEnd("help", f"{call.reason}: {call.detail}")
+    return RunEnd("safe_hold", reason)
+
+
+def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
+    """Terminate every entered leaf, stop the rover, close the record; each whatever becomes of the others."""
+
+    def judge() -> None:
+        """Look for the last evidence, whatever the end; a run that came to its end may prove nothing."""
+        nonlocal end
+        why = run.invalid()
+        if why and not end.cut:
+            end = RunEnd("invalid", f"{why}; the run ended {end.outcome}")
+
+    steps: tuple[Callable[[], object], ...] = (
+        changes.write,
+        run.trace.terminate_entered,
+        changes.write,
+        run.backend.safe_stop,
+        lambda: _see_it_rest(run),
+        judge,
+        lambda: run.journal.write(events.Stop(end.outcome, end.reason)),
+        run.recorder.close,
+        run.backend.close,
+    )
+    for step in steps:
+        try:
+            step()
+        except KeyboardInterrupt:
+            continue  # the rest has priority over whoever is in a hurry
+        except Exception as defect:
+            end = ended_by(end.defect or defect)
+    return end
+
+
+def _see_it_rest(run: Run) -> None:
+    """A tick to settle, more while a belt runs on, one that must find it there, and a report.
+
+    A stop nobody saw proves nothing.
+    """
+    by_s = run.services.clock.now_s + SETTLING_S
+    run.backend.advance()
+    while run.services.devices.tracks.read().moving and run.services.clock.now_s < by_s:
+        run.backend.advance()
+    run.backend.advance()
+    now = run.services.classification.sense(run.services.devices)
+    run.journal.telemetry(now, run.services.devices, run.services.classification.predicted())
+
+
+def _one_line(defect: BaseException) -> str:
+    text = str(defect) if isinstance(defect, NodeRaised) else f"{type(defect).__name__}: {defect}"
+    return " ".join(text.split())
+
+
+class _Changes:
+    """Writes the nodes whose status changed since the last tick."""
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+        self._last: dict[str, Status] = dict.fromkeys(run.paths, Status.INVALID)
+        self._outcomes: dict[str, Outcome[object]] = {}
+        run.trace.note = self._note
+
+    def write(self) -> None:
+        for path, status in self._changed():
+            self._run.journal.write(self._event(path, status))
+        self._outcomes.clear()
+
+    def _note(self, path: str, outcome: Outcome[object]) -> None:
+        self._outcomes[path] = outcome
+
+    def _changed(self) -> Iterator[tuple[str, Status]]:
+        last, ended_again = self._last, self._outcomes
+        for path, node in self._run.paths.items():
+            status = node.status
+            if status is not last[path] or path in ended_again:
+                last[path] = status
+                yield path, status
+
+    def _event(self, path: str, status: Status) -> events.NodeChange:
+        outcome = self._outcomes.get(path)
+        if outcome is None or not isinstance(self._run.paths[path], Leaf | Guarded):
+            return events.NodeChange(path, status.value.lower())
+        reason = "" if outcome.reason is Reason.DONE else str(outcome.reason)
+        return events.NodeChange(path, status.value.lower(), reason, outcome.detail)

@@ -1,0 +1,100 @@
+"""JSON Schema for editors, from the same declarations that files are checked against."""
+
+from __future__ import annotations
+
+import copy
+from enum import Enum
+from typing import Any
+
+from executive.config.expect import LISTS
+from executive.config.file_kinds import file_kind, file_kinds
+from executive.config.models import MissionFile, ScenarioFile
+from executive.core.values import VALUE_TYPES
+from executive.inject import schema as fault_schema
+from executive.tree.catalogue import NodeType, node_types
+from executive.tree.file import TreeFile
+from executive.tree.nodes.base import REQUIRED, Direction, PortSpec
+from executive.tree.spec import GUARDS
+
+_OWN = ("tree", "mission", "scenario")
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def kinds() -> tuple[str, ...]:
+    """Every kind of file that has a schema."""
+    return (*_OWN, *file_kinds())
+
+
+def schema(kind: str) -> dict[str, Any]:
+    """The schema of one kind of file. PluginError when the plug-in that reads it cannot be loaded."""
+    own = {"tree": _tree, "mission": _mission, "scenario": _scenario}
+    made = own[kind]() if kind in own else file_kind(kind).schema()
+    return {"$schema": DIALECT, "title": f"Longarm {kind}"} | made
+
+
+def _mission() -> dict[str, Any]:
+    return MissionFile.model_json_schema(by_alias=True)
+
+
+def _scenario() -> dict[str, Any]:
+    made = ScenarioFile.model_json_schema(by_alias=True)
+    inline = copy.deepcopy(made["properties"]["mission"])
+    name = {"type": "string", "description": "a mission file: a path or a bare name"}
+    made["properties"]["mission"] = {"anyOf": [name, inline]}
+    expect = made["$defs"]["Expect"]["properties"]
+    for name_of_list in LISTS:
+        several = {key: expect[name_of_list].pop(key) for key in ("type", "items")}
+        expect[name_of_list]["anyOf"] = [several["items"], several]
+    made["properties"]["faults"] = fault_schema.faults(made["$defs"])
+    return made
+
+
+def _tree() -> dict[str, Any]:
+    made = TreeFile.model_json_schema(by_alias=True)
+    made["properties"]["root"] = {"$ref": "#/$defs/node"}
+    made["$defs"] = made.get("$defs", {}) | {"node": _node()}
+    declaration = made["$defs"]["PortDeclaration"]
+    declaration["properties"]["type"] = {"enum": list(VALUE_TYPES)}
+    return made
+
+
+def _node() -> dict[str, Any]:
+    guards = {word: {"type": ["string", "boolean"], "description": "an expression"} for word in GUARDS}
+    own = {name: _parameters(kind) for name, kind in node_types().items()}
+    mapping = {
+        "type": "object",
+        "properties": own | guards | {"name": {"type": "string"}},
+        "description": "exactly one node type, or another tree by name",
+    }
+    return {"anyOf": [{"type": "string"}, mapping]}
+
+
+def _parameters(kind: NodeType) -> dict[str, Any]:
+    node: dict[str, Any] = {"$ref": "#/$defs/node"}
+    properties = {port.name: _port(port) for port in kind.ports}
+    if kind.children == "one":
+        properties["child"] = node
+    if kind.children == "many":
+        properties["children"] = {"type": "array", "items": node, "minItems": 1}
+    required = [port.name for port in kind.ports if port.default is REQUIRED]
+    mapping: dict[str, Any] = {"type": ["object", "null"], "properties": properties, "description": kind.doc}
+    if kind.children == "one" and not kind.ports:
+        return {"anyOf": [mapping, node], "description": kind.doc}
+    mapping |= {"required": required, "additionalProperties": False}
+    if kind.children == "many":
+        return {"anyOf": [mapping, {"type": "array", "items": node, "minItems": 1}], "description": kind.doc}
+    return mapping
+
+
+def _port(port: PortSpec) -> dict[str, Any]:
+    """What may be given for a port: a reference always, a literal where its type has them."""
+    reference = {"type": "string", "pattern": r"^\{.*\}$"}
+    told = {"description": f"{port.help} ({port.type.name}, {port.direction.value})"}
+    if port.direction is not Direction.IN or not port.type.literal:
+        return reference | told
+    if port.type.unit is not None or port.type.python is str:
+        return {"type": "string"} | told
+    if issubclass(port.type.python, Enum):
+        return {"anyOf": [{"enum": [member.value for member in port.type.python]}, reference]} | told
+    plain = {float: "number", int: "integer", bool: "boolean"}[port.type.python]
+    return {"anyOf": [{"type": plain}, reference]} | told

@@ -1,0 +1,99 @@
+"""What every driving leaf shares: a drive of the belts under supervision, its pose predicted on."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+from executive.core.ports import Action
+from executive.core.types import (
+    Outcome,
+    PoseEstimate,
+    Reason,
+    Segment,
+    TrackReading,
+)
+from executive.core.values import (
+    ANGLE,
+    FORCE,
+    NUMBER,
+    POSE,
+    SEGMENT,
+)
+from executive.navigation import guidance
+from executive.navigation.belt_watch import BeltWatch
+from executive.navigation.guidance import Belts
+from executive.tree.nodes.action import ActionLeaf
+from executive.tree.nodes.base import FromTree, In, InOut
+
+DRIVING_OUTCOMES: tuple[Reason, ...] = (
+    Reason.DONE,
+    Reason.BLOCKED,
+    Reason.TILT,
+    Reason.TETHER,
+    Reason.OFF_TRACK,
+    Reason.DEVICE,
+)
+
+
+class DrivingLeaf(ActionLeaf):
+    """Drives the belts; stops on tilt, pull of the tether, a belt that does not count, before the margin.
+
+    Leaves the predicted pose behind.
+    """
+
+    pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))
+    tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
+    tension_limit = In[float](FORCE, "stop at this pull; half of one at a snag may not be felt", default=4.0)
+    sigmas = In[float](NUMBER, "standard deviations to keep from the off-track margin", default=2.0)
+
+    outcomes: ClassVar[tuple[Reason, ...]] = DRIVING_OUTCOMES
+
+    def belts(self) -> Outcome[Belts]:
+        """The belt travels to drive, or why not."""
+        raise TypeError(f"{type(self).__name__} has no belts")
+
+    def request(self) -> Action[TrackReading] | Outcome[Any]:
+        planned = self.belts()
+        if not planned.ok or planned.value is None:
+            return planned
+        speed, tracks = self.services.rig.rover.speed_m_s, self.services.devices.tracks
+        self._belts = BeltWatch(planned.value, speed, tracks.read())
+        return tracks.drive(planned.value.left_m, planned.value.right_m, speed)
+
+    def watch(self) -> Outcome[object] | None:
+        problem = self._problem(self._carry_on())
+        if problem is not None:
+            self.services.journal.assessment(self.services.classification.failed(problem))
+        return problem
+
+    def _problem(self, pose: PoseEstimate) -> Outcome[object] | None:
+        """Why this drive must not go on, None if it may."""
+        telemetry = self.services.classification.telemetry
+        if telemetry is not None:
+            if miscount := self._belts.problem(telemetry.tracks):
+                return Outcome(Reason.DEVICE, miscount)
+            tilt_rad = math.hypot(telemetry.tilt.roll_rad, telemetry.tilt.pitch_rad)
+            if tilt_rad > self.tilt_limit:
+                return Outcome(Reason.TILT, f"{math.degrees(tilt_rad):.1f} deg")
+            if telemetry.tether.tension_n > self.tension_limit:
+                return Outcome(Reason.TETHER, f"pulls with {telemetry.tether.tension_n:.1f} N")
+        room_m = math.inf if self.segment is None else guidance.room_m(pose, self.segment, self.sigmas)
+        if room_m <= 0.0:
+            return Outcome(Reason.OFF_TRACK, f"may be {-room_m * 1e3:.0f} mm beyond the margin")
+        return None
+
+    def finish(self, outcome: Outcome[TrackReading]) -> Outcome[Any]:
+        self._carry_on()
+        if not outcome.ok:
+            self.services.journal.assessment(self.services.classification.failed(outcome))
+        return outcome
+
+    def halt(self) -> None:
+        super().halt()
+        self.services.devices.tracks.stop()
+
+    def _carry_on(self) -> PoseEstimate:
+        self.pose = self.services.classification.predicted().on(self.segment)
+        return self.pose

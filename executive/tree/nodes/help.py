@@ -1,0 +1,31 @@
+"""Stop safely and call home."""
+
+from __future__ import annotations
+
+from executive.core.ports import Action
+from executive.core.types import Call, Outcome, Reason
+from executive.tree.nodes.action import ActionLeaf
+
+
+class CallForHelp(ActionLeaf):
+    """Stop the rover, send the evidence to ground, and end: what comes next is ground's decision.
+
+    Always fails, with the reason that led here: the mission did not reach its goal by itself.
+    """
+
+    outcomes = (Reason.NO_STRATEGY,)
+    heeds_alarm = False  # whatever happens, ground is told
+
+    def request(self) -> Action[str]:
+        self.services.devices.tracks.stop()
+        failed = self.trace.last_failure
+        path, outcome = failed if failed else ("", Outcome[object](Reason.NO_STRATEGY))
+        weights = self.services.classification.weights
+        evidence = {str(h): round(w, 4) for h, w in weights.items() if w >= 0.01}
+        call = Call(self.services.clock.now_s, outcome.reason, f"{path}: {outcome.detail}", evidence)
+        self.services.journal.call(call)
+        self._why = outcome
+        return self.services.devices.link.call(call)
+
+    def finish(self, outcome: Outcome[str]) -> Outcome[object]:
+        return Outcome(Reason.NO_STRATEGY, f"{self._why.reason}: {self._why.detail}")

@@ -1,0 +1,92 @@
+"""Measure where the rover is."""
+
+from __future__ import annotations
+
+from executive.core.ports import Action, LocaliseRequest
+from executive.core.types import (
+    Outcome,
+    PoseEstimate,
+    Quality,
+    Reason,
+    Segment,
+    Source,
+)
+from executive.core.values import (
+    ANGLE,
+    DURATION,
+    LENGTH,
+    POSE,
+    QUALITY,
+    SEGMENT,
+)
+from executive.isc.prediction import unusable
+from executive.tree.nodes.action import ActionLeaf
+from executive.tree.nodes.base import FromTree, In, InOut
+
+
+class Localise(ActionLeaf):
+    """Measure the rover's pose by vision, at rest, and hold it against the prediction."""
+
+    quality = In[Quality](QUALITY, "trend, precise or far", default=Quality.PRECISE)
+    pose = InOut[PoseEstimate](POSE, "the pose, as measured and predicted")
+    segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))
+    budget = In[float](DURATION, "mission time it may take", default=900.0)
+    position = In[float](LENGTH, "standard deviation wanted; 0: that of the quality", default=0.0)
+    yaw = In[float](ANGLE, "standard deviation wanted; 0: that of the quality", default=0.0)
+    settle = In[float](DURATION, "time at rest before the first exposure", default=5.0)
+
+    outcomes = (
+        Reason.DONE,
+        Reason.NOT_SEEN,
+        Reason.POOR_VIEW,
+        Reason.UNSTABLE_IMAGES,
+        Reason.IMPLAUSIBLE,
+        Reason.MISALIGNED,
+        Reason.OUT_OF_REACH,
+        Reason.TIMEOUT,
+        Reason.DEVICE,
+    )
+
+    def begin(self) -> None:
+        self.services.devices.tracks.stop()
+        clock = self.services.clock
+        self._start_tick = clock.ticks + clock.ticks_for(self.settle)
+
+    def step(self) -> Outcome[object] | None:
+        if self.services.clock.ticks < self._start_tick:
+            return None
+        if self._action is None:
+            self._start_s = self.services.clock.now_s
+            self._action = self.request()
+        return super().step()
+
+    def request(self) -> Action[PoseEstimate]:
+        predicted = self.services.classification.predicted()
+        request = LocaliseRequest(self.quality, predicted, self.budget, self.segment, self.position, self.yaw)
+        return self.services.localizer.locate(request)
+
+    def finish(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
+        classification = self.services.classification
+        self.services.journal.views(self.services.localizer.views(), outcome)
+        outcome = self.held_against_what_can_be(outcome)
+        if not outcome.ok or outcome.value is None:
+            self.services.journal.assessment(classification.failed(outcome))
+            return outcome
+        fix = outcome.value.on(self.segment)
+        self.services.journal.assessment(classification.fixed(fix))
+        self.services.journal.estimate(fix)
+        self.pose = classification.joined(fix).on(self.segment)
+        return Outcome(Reason.DONE, "; ".join(filter(None, (_summary(fix), outcome.detail))), fix)
+
+    def held_against_what_can_be(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
+        """The outcome; IMPLAUSIBLE in place of a pose that is no number, old, or out of the belts' reach."""
+        if not outcome.ok or outcome.value is None:
+            return outcome
+        why = unusable(outcome.value, self._start_s)
+        why = why or self.services.classification.beyond_reach(outcome.value)
+        return Outcome(Reason.IMPLAUSIBLE, why) if why else outcome
+
+
+def _summary(fix: PoseEstimate) -> str:
+    rests_on = "outline" if fix.source is Source.PASSIVE else f"{fix.markers} markers"
+    return f"{rests_on}, sigma {fix.sigma_position_m * 1e3:.1f} mm"

@@ -1,0 +1,47 @@
+"""What leaves are given: frozen, by constructor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from executive.core.clock import Clock
+from executive.core.ports import Devices, Localizer
+from executive.core.rig import RigCalibration
+from executive.core.types import (
+    Call,
+    Images,
+    Outcome,
+    PoseEstimate,
+    Segment,
+    View,
+)
+
+if TYPE_CHECKING:  # only named here, so that a tree can be read, checked and drawn without them
+    from executive.isc.classification import Assessment, Classification
+    from executive.pool.pool import Pool
+
+
+class Journal(Protocol):
+    """Where leaves put what only they know; the runner's recorder in a run, a list in a test."""
+
+    def estimate(self, pose: PoseEstimate) -> None: ...
+    def segment(self, segment: Segment | None) -> None: ...
+    def waypoint(self, index: int, pose: PoseEstimate) -> None: ...
+    def call(self, call: Call) -> None: ...
+    def assessment(self, assessment: Assessment) -> None: ...
+    def views(self, views: tuple[View, ...], outcome: Outcome[object]) -> None: ...
+    def picture(self, images: Images) -> None: ...
+
+
+@dataclass(frozen=True)
+class Services:
+    """Ports of the robot, the localizer, the in-situ classification, the pool, and the journal."""
+
+    clock: Clock
+    devices: Devices
+    rig: RigCalibration
+    localizer: Localizer
+    classification: Classification
+    pool: Pool
+    journal: Journal

@@ -1,0 +1,1 @@
+"""From exposures to difference images: shots, codes, stacks, vibration, exposure."""

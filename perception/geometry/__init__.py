@@ -1,0 +1,1 @@
+"""Frames, cameras and poses: projection, kinematics, pose from centres. No pixels."""

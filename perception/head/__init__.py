@@ -1,0 +1,1 @@
+"""Where the head truly looks: ground as its reference, registration of pictures, alignment."""

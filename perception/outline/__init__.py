@@ -1,0 +1,1 @@
+"""The rover without its markers: outlines at rest, and outlines of what moves."""

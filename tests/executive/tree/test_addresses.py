@@ -1,0 +1,50 @@
+"""Nodes are found by name, by what stands around them, and by number; control flow may be left out."""
+
+from __future__ import annotations
+
+import pytest
+
+from executive.tree.addresses import CONTROL, means
+from executive.tree.catalogue import BUILTINS
+
+SEGMENT = "navigate/selector/mission/for_each/sequence/traverse_segment/sequence/recover"
+TREK = f"{SEGMENT}/sequence/trek_to/loop/sequence"
+BACK_OFF = f"{SEGMENT}/back_off/sequence"
+
+
+@pytest.mark.parametrize(
+    ("address", "path"),
+    [
+        ("localise", f"{TREK}/localise"),
+        ("localise", f"{BACK_OFF}/localise#2"),
+        ("trek_to/localise", f"{TREK}/localise"),
+        ("trek_to/loop/sequence/localise", f"{TREK}/localise"),
+        ("traverse_segment/trek_to/localise", f"{TREK}/localise"),
+        ("back_off/localise", f"{BACK_OFF}/localise#2"),
+        ("back_off/localise#2", f"{BACK_OFF}/localise#2"),
+        ("back_off/localise#1", f"{BACK_OFF}/localise"),
+        ("mission/for_each", "navigate/selector/mission/for_each"),
+    ],
+)
+def test_an_address_means_a_node_by_name_and_what_is_around_it(address: str, path: str) -> None:
+    assert means(address, path)
+
+
+@pytest.mark.parametrize(
+    ("address", "path"),
+    [
+        ("trek_to", f"{TREK}/localise"),
+        ("back_off/localise", f"{TREK}/localise"),
+        ("back_off/localise#1", f"{BACK_OFF}/localise#2"),
+        ("traverse_segment/localise", f"{BACK_OFF}/localise"),  # the strategy's own, not the segment's
+        ("navigate/localise", f"{TREK}/localise"),
+        ("x/navigate/selector", "navigate/selector"),
+        ("local", f"{TREK}/localise"),
+    ],
+)
+def test_an_address_does_not_mean_what_lies_in_another_named_node(address: str, path: str) -> None:
+    assert not means(address, path)
+
+
+def test_whatever_node_is_built_in_counts_as_control_flow() -> None:
+    assert BUILTINS.keys() == CONTROL
