@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from executive.inject.faults import CATEGORIES
-from executive.run.listing import entries
+from executive.run.catalogue import entries
 
 PAGE = Path(__file__).parent / "faults.md"
 

@@ -6,9 +6,10 @@ from typing import Any
 
 from executive.config import distributions
 from executive.config.describe import properties
-from executive.core import plugins
+from executive.core import registry
 from executive.core.units import DURATION, articled
 from executive.inject.faults import FaultSpec
+from executive.inject.kind import FAULT_KIND
 from executive.inject.profiles import STEP, Profile
 from executive.inject.triggers import Trigger
 
@@ -20,14 +21,10 @@ def faults(defs: Schema) -> Schema:
     defs["trigger"] = _inlined(Trigger.model_json_schema(), defs)
     defs["profile"] = {"anyOf": [{"const": STEP}, _inlined(Profile.model_json_schema(), defs)]}
     defs["distribution"] = _distribution()
-    specs = [_spec(name) for name in sorted(plugins.found(plugins.FAULTS))]
+    specs = registry.every(FAULT_KIND).values()
     defs["fault"] = {"oneOf": [_fault(spec, defs) for spec in specs]}
     defs["group"] = _group()
     return {"type": "array", "items": {"anyOf": [_ref("fault"), _ref("group")]}}
-
-
-def _spec(name: str) -> FaultSpec:
-    return plugins.load(plugins.FAULTS, name, FaultSpec)
 
 
 def _fault(spec: FaultSpec, defs: Schema) -> Schema:

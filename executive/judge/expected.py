@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from executive.config.expect import Expect
+from executive.config.registered import registered
 from executive.config.source import Place, Source
 from executive.config.validate import guess, listed
-from executive.core import plugins
-from executive.core.errors import Problem
+from executive.core.errors import ConfigError, Problem
 from executive.inject.entries import ResolvedFault
 from executive.isc.hypotheses import Hypothesis
 from executive.judge.temporal import (
@@ -18,6 +18,7 @@ from executive.judge.temporal import (
     Until,
     parse_formula,
 )
+from executive.pool.kind import STRATEGY_KIND
 from executive.tree.expressions.typed import GuardError
 
 
@@ -47,9 +48,8 @@ def expect_problems(source: Source, faults: Sequence[ResolvedFault] | None) -> I
             yield from _strangers(source, _texts(source, key, "fault"), "fault", names)
     hypotheses = [str(h) for h in Hypothesis]
     yield from _strangers(source, _texts(source, "diagnosed", "as"), "hypothesis", hypotheses)
-    strategies = sorted(plugins.found(plugins.STRATEGIES))
     for key in ("strategies_tried", "strategies_not_tried"):
-        yield from _strangers(source, _texts(source, key), "strategy", strategies)
+        yield from _no_strategies(source, _texts(source, key))
 
 
 def _until(text: str) -> Formula:
@@ -78,6 +78,14 @@ def _texts(source: Source, key: str, field: str | None = None) -> Iterator[tuple
             at, member = (*at, field), member.get(field)
         if isinstance(member, str):
             yield at, member
+
+
+def _no_strategies(source: Source, named: Iterator[tuple[Place, str]]) -> Iterator[Problem]:
+    for place, name in named:
+        try:
+            registered(STRATEGY_KIND, name, source.at(place))
+        except ConfigError as error:
+            yield from error.problems
 
 
 def _strangers(

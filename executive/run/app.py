@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from executive.config.backends import BackendRequest
 from executive.config.expect import Expect
-from executive.core import plugins
+from executive.config.localizer_kind import LOCALIZER_KIND
+from executive.core import registry
 from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
@@ -28,6 +29,7 @@ from executive.record.run_folder import (
     write_traceback,
 )
 from executive.report import write_report
+from executive.report.reporter import REPORTER_KIND
 from executive.report.show import draw
 from executive.run.assembly import TICK_S, set_up, write_start
 from executive.run.progress import progress_bar
@@ -72,7 +74,7 @@ def run(file: Path, options: RunOptions) -> Finished:
 def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     """The same for a scenario already resolved; of the options, those that change it are without effect."""
     strategies = load_strategies()
-    localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
+    localizer = registry.get(LOCALIZER_KIND, scenario.file.localizer)
     watch = Stopwatch()
     folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
@@ -97,10 +99,9 @@ def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
 
 def report(folder: Path) -> Path:
     """(Re)write the report of a run or campaign folder from its record; RecordError where there is none."""
-    for name in plugins.found(plugins.REPORTERS):
+    for name in registry.names(REPORTER_KIND):
         if (folder / f"{name}.json").is_file():
-            reporter = cast("Callable[[Path], Path]", plugins.load(plugins.REPORTERS, name))
-            return reporter(folder)
+            return registry.get(REPORTER_KIND, name).write(folder)
     if not (folder / "record.mcap").is_file():
         raise RecordError(f"{folder}: got no record.mcap, expected a run or campaign folder")
     return write_report(folder, _tree_svg(folder))

@@ -10,18 +10,18 @@ from typing import Any
 import yaml
 from pydantic import BaseModel
 
-from executive.config.backends import BackendSpec
+from executive.config.backends import BACKEND_KIND, BackendSpec
 from executive.config.distributions import drawn
 from executive.config.expect import Expect, with_lists
 from executive.config.find import find, portable, shown
+from executive.config.localizer_kind import LOCALIZER_KIND
 from executive.config.mission import mission_problems
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.overrides import override
+from executive.config.registered import registered
 from executive.config.rig_overrides import rig_fields, rig_from
 from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
-from executive.config.validate import shown as shown_data
-from executive.core import plugins
 from executive.core.chance import generator
 from executive.core.errors import ConfigError, Problem
 from executive.core.rig import RigCalibration
@@ -208,21 +208,13 @@ def _setting(source: Source, backend: str) -> Setting:
     return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
 
 
-def _check_known(source: Source, what: str, group: str, name: str) -> None:
-    known = sorted(plugins.found(group))
-    if name not in known:
-        message = f"got {shown_data(name)}, expected a {what}: {listed(known)}{guess(name, known)}"
-        raise ConfigError([source.at((what,)).problem(message)])
-
-
 def _check_localizer(source: Source) -> None:
     default = str(ScenarioFile.model_fields["localizer"].default)
-    _check_known(source, "localizer", plugins.LOCALIZERS, _text(source, "localizer", default))
+    registered(LOCALIZER_KIND, _text(source, "localizer", default), source.at(("localizer",)))
 
 
 def _backend(source: Source, name: str) -> BackendSpec:
-    _check_known(source, "backend", plugins.BACKENDS, name)
-    return plugins.load(plugins.BACKENDS, name, BackendSpec)
+    return registered(BACKEND_KIND, name, source.at(("backend",)))
 
 
 def _world(source: Source, backend: BackendSpec) -> BaseModel:

@@ -9,7 +9,8 @@ from typing import Any
 from executive.config.expect import LISTS
 from executive.config.file_kinds import file_kind, file_kinds
 from executive.config.models import MissionFile, ScenarioFile
-from executive.core.values import VALUE_TYPES
+from executive.core import registry
+from executive.core.values import VALUE_TYPE_KIND
 from executive.inject import schema as fault_schema
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.file import TreeFile
@@ -54,7 +55,7 @@ def _tree() -> dict[str, Any]:
     made["properties"]["root"] = {"$ref": "#/$defs/node"}
     made["$defs"] = made.get("$defs", {}) | {"node": _node()}
     declaration = made["$defs"]["PortDeclaration"]
-    declaration["properties"]["type"] = {"enum": list(VALUE_TYPES)}
+    declaration["properties"]["type"] = {"enum": list(registry.names(VALUE_TYPE_KIND))}
     return made
 
 

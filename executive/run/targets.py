@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence, Set
 from executive.config.expect import LISTS_OF_STEPS
 from executive.config.source import Place, Source
 from executive.config.validate import guess
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import Problem
 from executive.inject.entries import ResolvedFault
+from executive.pool.kind import STRATEGY_KIND
 from executive.tree.addresses import means
 from executive.tree.spec import TreeSpec, walk
 from executive.tree.strategies import load_strategies, strategy_trees
@@ -20,7 +21,7 @@ Named = tuple[Place, str]
 def target_problems(source: Source, faults: Sequence[ResolvedFault], tree: TreeSpec) -> list[Problem]:
     """Faults and expectations of a node, a value or a strategy that is not there: they could never come."""
     absent = f"{{}}, which the tree {tree.name} does not have"
-    known = set(plugins.found(plugins.STRATEGIES))
+    known = set(registry.names(STRATEGY_KIND))
     return [
         *_strange_nodes(source, [*_nodes_of(faults), *_steps(source)], tree),
         *_strangers(source, _parameters(faults, "value"), _value_names(tree), f"the value {absent}"),

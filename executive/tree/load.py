@@ -18,13 +18,12 @@ from executive.tree.expressions.typed import GuardError
 from executive.tree.file import TreeFile, declared_ports
 from executive.tree.flow import Flow
 from executive.tree.literals import port_value
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import (
     REQUIRED,
     Direction,
-    Leaf,
     PortSpec,
 )
+from executive.tree.nodes.kind import Leaves
 from executive.tree.spec import GUARDS, Literal, NodeSpec, PortValue, Reference, TreeSpec
 
 MAX_SIZE = 5000
@@ -35,9 +34,7 @@ BESIDE = ("name", *GUARDS)
 CHILD_KEYS = {"none": (), "one": ("child",), "two": ("children",), "many": ("children",)}
 
 
-def load_tree(
-    reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES, instead: Instead = AS_IT_IS
-) -> TreeSpec:
+def load_tree(reference: Path | str, leaves: Leaves | None = None, instead: Instead = AS_IT_IS) -> TreeSpec:
     """Load by path or bare name; ConfigError with every problem in the file and the trees it uses.
 
     A file among `instead` (by its absolute path) is taken to hold the text given there.
@@ -48,7 +45,7 @@ def load_tree(
     return _Trees(node_types(leaves), given).load(reference.absolute(), ())
 
 
-def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
+def load_tree_text(text: str, name: str = "tree", leaves: Leaves | None = None) -> TreeSpec:
     """The same from text; other trees are found by bare name or from the working folder."""
     return _Trees(node_types(leaves)).read(read_text(text, name), ())
 

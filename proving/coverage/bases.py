@@ -7,10 +7,10 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import ConfigError
 from executive.inject.entries import RESERVED
-from executive.inject.faults import FaultSpec
+from executive.inject.kind import FAULT_KIND
 from executive.pool.pool import Strategy
 from executive.record import History, events
 from executive.run.scenario import ResolvedScenario
@@ -76,9 +76,8 @@ def resolved_or_none(data: Data) -> ResolvedScenario | None:
 
 
 def _installed(fault: Fault) -> bool:
-    return next(iter(fault)) in plugins.found(plugins.FAULTS)
+    return next(iter(fault)) in registry.names(FAULT_KIND)
 
 
 def _lasting(kind: str) -> bool:
-    spec = plugins.load(plugins.FAULTS, kind, FaultSpec)
-    return isinstance(spec, FaultSpec) and spec.lasting
+    return registry.get(FAULT_KIND, kind).lasting

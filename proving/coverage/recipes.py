@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.types import Reason
 from executive.inject.faults import FaultSpec
+from executive.inject.kind import FAULT_KIND
 from executive.pool.pool import Strategy
 from proving.coverage.items import Item
 
@@ -89,8 +90,7 @@ def of_kind(spec: FaultSpec, strategies: Iterable[str]) -> Iterator[Fault]:
 
 def specs() -> list[FaultSpec]:
     """Every kind of fault that is installed."""
-    loaded = [plugins.load(plugins.FAULTS, name, FaultSpec) for name in plugins.found(plugins.FAULTS)]
-    return [spec for spec in loaded if isinstance(spec, FaultSpec)]
+    return list(registry.every(FAULT_KIND).values())
 
 
 def for_item(item: Item, strategies: dict[str, Strategy]) -> Iterator[Fault]:

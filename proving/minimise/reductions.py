@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.units import (
     DURATION,
     UnitError,
@@ -14,6 +14,7 @@ from executive.core.units import (
 )
 from executive.inject.entries import RESERVED
 from executive.inject.faults import FaultSpec
+from executive.inject.kind import FAULT_KIND
 from proving.minimise.fewer import fewer
 from proving.minimise.trier import Trier
 from proving.scenario_data import Data, Keys, get, replaced, without
@@ -157,7 +158,7 @@ def _kind(entry: Data) -> str:
 
 
 def _spec(trier: Trier, index: int) -> FaultSpec:
-    return plugins.load(plugins.FAULTS, _kind(trier.best["faults"][index]), FaultSpec)
+    return registry.get(FAULT_KIND, _kind(trier.best["faults"][index]))
 
 
 def _name(trier: Trier, index: int) -> str:

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from docs.list_scenarios import PAGE, lesson, page
-from executive.core import plugins
+from executive.core import registry
+from executive.inject.kind import FAULT_KIND
 from proving.suite.collect import collect
 from proving.suite.run import SuiteOptions, run_suite
 
@@ -36,7 +37,7 @@ def suite():
 
 def test_every_fault_of_the_catalogue_has_a_scenario(suite):
     injected = {fault.spec.name for each in suite for fault in each.scenario.faults}
-    assert set(plugins.found(plugins.FAULTS)) <= injected
+    assert set(registry.names(FAULT_KIND)) <= injected
 
 
 def test_every_kind_of_onset_and_profile_is_shown(suite):

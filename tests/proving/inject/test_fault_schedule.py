@@ -110,12 +110,12 @@ def test_the_catalogue_lists_every_fault_with_its_parameters(capsys):
 
 
 def test_every_fault_leads_to_a_hypothesis_that_exists():
-    from executive.core import plugins
-    from executive.inject.faults import FaultSpec
+    from executive.core import registry
+    from executive.inject.kind import FAULT_KIND
     from executive.isc.hypotheses import Hypothesis
 
-    for name in plugins.found(plugins.FAULTS):
-        spec = plugins.load(plugins.FAULTS, name, FaultSpec)
+    for name in registry.names(FAULT_KIND):
+        spec = registry.get(FAULT_KIND, name)
         assert spec.name == name
         assert spec.hypothesis in {*Hypothesis, ""}  # none where there is nothing to conclude
 
