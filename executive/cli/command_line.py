@@ -13,6 +13,7 @@ import click
 
 from executive.cli.catalogue import CatalogueGroup
 from executive.core.errors import LongarmError
+from executive.core.registry import Project, in_project, project_file
 
 DEFECT = 3
 
@@ -25,7 +26,8 @@ def main() -> None:
 def invoke(arguments: list[str]) -> int:
     """Run the command line; the exit code."""
     try:
-        code = cli.main(args=arguments, prog_name="longarm", standalone_mode=False)
+        with in_project(_project(arguments)):
+            code = cli.main(args=arguments, prog_name="longarm", standalone_mode=False)
     except click.exceptions.Exit as error:
         return error.exit_code
     except click.exceptions.Abort:
@@ -43,6 +45,16 @@ def invoke(arguments: list[str]) -> int:
         click.echo(f"longarm: a defect: {type(error).__name__}: {words} ({place})", err=True)
         return DEFECT
     return code if isinstance(code, int) else 0
+
+
+def _project(arguments: list[str]) -> Project | None:
+    """The project of the first file or folder that the command line names, else of the working folder."""
+    named = next((Path(a) for a in arguments if not a.startswith("-") and Path(a).exists()), Path.cwd())
+    if all(project_file(at) is None for at in (named, Path.cwd())):
+        return None  # without reading one there is nothing to import
+    from executive.config.project import project_for
+
+    return project_for(named)
 
 
 def _deepest(error: BaseException) -> str:

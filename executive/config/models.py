@@ -65,11 +65,13 @@ class MissionFile(Strict):
 class ScenarioFile(Strict):
     """A mission, a world, a seed, faults, expectations. `world`, `rig` and `faults` are read further on.
 
+    `project` names the project file where it is not that beside the scenario or above it.
     `expected_to_fail` says why the expectations do not hold yet; the run's safety must, all the same.
     """
 
     scenario: Name
     doc: str = ""
+    project: Annotated[str, Field(min_length=1)] | None = None
     mission: MissionFile
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     tier: Literal["full", "geometric"] = "full"

@@ -15,6 +15,7 @@ from executive.core import registry
 from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
+from executive.core.registry import in_project
 from executive.judge.expectations import judge
 from executive.judge.safety import safety_rows
 from executive.pool.pool import Strategy
@@ -73,6 +74,11 @@ def run(file: Path, options: RunOptions) -> Finished:
 
 def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     """The same for a scenario already resolved; of the options, those that change it are without effect."""
+    with in_project(scenario.project):
+        return _run(scenario, options)
+
+
+def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     strategies = load_strategies()
     localizer = registry.get(LOCALIZER_KIND, scenario.file.localizer)
     watch = Stopwatch()
@@ -183,7 +189,8 @@ def draw_run(folder: Path, form: str) -> str | bytes:
     if not (folder / "scenario.yaml").is_file():
         raise RecordError(f"{folder}: got no scenario.yaml, expected a run folder")
     scenario = resolve_scenario(folder / "scenario.yaml")
-    return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
+    with in_project(scenario.project):
+        return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
 
 
 def last_outcomes(folder: Path) -> dict[str, str]:

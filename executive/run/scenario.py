@@ -18,12 +18,14 @@ from executive.config.localizer_kind import LOCALIZER_KIND
 from executive.config.mission import mission_problems
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.overrides import override
+from executive.config.project import named_project, with_defaults
 from executive.config.registered import registered
 from executive.config.rig_overrides import rig_fields, rig_from
 from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
 from executive.core.chance import generator
 from executive.core.errors import ConfigError, Problem
+from executive.core.registry import Project, in_project
 from executive.core.rig import RigCalibration
 from executive.inject.entries import (
     ResolvedFault,
@@ -49,6 +51,8 @@ class ResolvedScenario:
     faults: tuple[ResolvedFault, ...]
     tree: TreeSpec
     backend: BackendSpec
+    project: Project | None
+    """Whose plug-ins it uses."""
     inputs: Mapping[str, object]
     """The mission's `tree_inputs`, in SI, for the tree's ports of these names."""
     instead: Instead = field(default_factory=dict)
@@ -80,8 +84,9 @@ class ResolvedScenario:
 
     def with_trees(self, instead: Instead) -> ResolvedScenario:
         """The same run if these tree files said something else; ConfigError where that cannot be loaded."""
-        tree = load_tree(self.mission.tree, instead=instead)
-        strategy_trees(load_strategies(), instead)
+        with in_project(self.project):
+            tree = load_tree(self.mission.tree, instead=instead)
+            strategy_trees(load_strategies(), instead)
         return replace(self, tree=tree, instead=instead)
 
     def dump(self) -> str:
@@ -115,16 +120,23 @@ def resolve_source(
     source: Source, seed: int | None = None, tier: str | None = None, overrides: Sequence[str] = ()
 ) -> ResolvedScenario:
     """The same from a file already read, or from a part of one."""
-    source = as_scenario(source)
-    for number, text in enumerate(overrides, 1):
-        source = override(source, text, number)
-    source = _with_value(source, "seed", seed)
-    source = _with_value(source, "tier", tier)
-    return resolve(source)
+    with in_project(named_project(source)):
+        source = as_scenario(source)
+        for number, text in enumerate(overrides, 1):
+            source = override(source, text, number)
+        source = _with_value(source, "seed", seed)
+        source = _with_value(source, "tier", tier)
+        return resolve(source)
 
 
 def resolve(source: Source) -> ResolvedScenario:
     """The same from data already read."""
+    project = named_project(source)
+    with in_project(project):
+        return _resolve(with_defaults(source, project), project)
+
+
+def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
     problems = Problems()
     source = ungrouped(with_lists(source), ("faults",))
     seed = source.data.get("seed", 0) if isinstance(source.data, dict) else 0
@@ -154,14 +166,16 @@ def resolve(source: Source) -> ResolvedScenario:
     problems.check()
     if file is None or backend is None or world is None or rig is None or tree is None or tree_path is None:
         raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
+    named = str(project.file) if project is not None else None
     mission = file.mission.model_copy(update={"tree": portable("trees", tree_path)})
     return ResolvedScenario(
-        file.model_copy(update={"mission": mission, "world": {}, "rig": {}, "faults": ()}),
+        file.model_copy(update={"mission": mission, "project": named, "world": {}, "rig": {}, "faults": ()}),
         world,
         rig,
         faults or (),
         tree,
         backend,
+        project,
         inputs or {},
     )
 

@@ -9,6 +9,7 @@ from typing import Any
 from executive.config.expect import LISTS
 from executive.config.file_kinds import file_kind, file_kinds
 from executive.config.models import MissionFile, ScenarioFile
+from executive.config.project import ProjectFile
 from executive.core import registry
 from executive.core.values import VALUE_TYPE_KIND
 from executive.inject import schema as fault_schema
@@ -17,7 +18,7 @@ from executive.tree.file import TreeFile
 from executive.tree.nodes.base import REQUIRED, Direction, PortSpec
 from executive.tree.spec import GUARDS
 
-_OWN = ("tree", "mission", "scenario")
+_OWN = ("tree", "mission", "scenario", "project")
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
@@ -28,9 +29,13 @@ def kinds() -> tuple[str, ...]:
 
 def schema(kind: str) -> dict[str, Any]:
     """The schema of one kind of file. PluginError when the plug-in that reads it cannot be loaded."""
-    own = {"tree": _tree, "mission": _mission, "scenario": _scenario}
+    own = {"tree": _tree, "mission": _mission, "scenario": _scenario, "project": _project}
     made = own[kind]() if kind in own else file_kind(kind).schema()
     return {"$schema": DIALECT, "title": f"Longarm {kind}"} | made
+
+
+def _project() -> dict[str, Any]:
+    return ProjectFile.model_json_schema(by_alias=True)
 
 
 def _mission() -> dict[str, Any]:

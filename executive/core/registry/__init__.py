@@ -16,7 +16,7 @@ from typing import Any, TypeVar, cast
 
 from executive.core.registry.entry import Broken
 from executive.core.registry.kind import Kind, own_name
-from executive.core.registry.project import Project, current_project, in_project
+from executive.core.registry.project import PROJECT_FILE, Project, current_project, in_project, project_file
 from executive.core.registry.sources import (
     Module,
     broken_kinds,
@@ -27,6 +27,7 @@ from executive.core.registry.sources import (
 )
 
 __all__ = [
+    "PROJECT_FILE",
     "Broken",
     "Kind",
     "Module",
@@ -44,6 +45,7 @@ __all__ = [
     "modules",
     "names",
     "own_name",
+    "project_file",
     "source_of",
 ]
 

@@ -25,6 +25,15 @@ class Project:
         return f"{self.file.name}: {shown}"
 
 
+PROJECT_FILE = "longarm.yaml"
+
+
+def project_file(folder: Path) -> Path | None:
+    """The nearest project file in this folder or above it."""
+    folder = folder.absolute()
+    return next((file for at in (folder, *folder.parents) if (file := at / PROJECT_FILE).is_file()), None)
+
+
 _UNDER_WAY: ContextVar[Project | None] = ContextVar("project", default=None)
 
 

@@ -159,7 +159,10 @@ def test_a_tier_that_the_backend_cannot_play_is_refused(folder):
 
 def test_a_plugin_that_cannot_be_loaded_is_named(folder):
     path = rewritten(folder, "backend: plain", "backend: broken")
-    with pytest.raises(ConfigError, match=r"dark.yaml:4:10: backend broken: .*longarm.backends: broken = third_party_plugin:MISSING"):
+    with pytest.raises(
+        ConfigError,
+        match=r"dark.yaml:4:10: backend broken: .*longarm.backends: broken = third_party_plugin:MISSING",
+    ):
         resolve_scenario(path)
 
 
