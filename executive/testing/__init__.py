@@ -1,7 +1,31 @@
-"""Public helpers for those who write backends, strategies and trees: a fake robot and the checkers."""
+"""Public helpers for those who write plug-ins: a fake robot, a bench to tick on, and the checkers."""
 
-from executive.testing.check_backend import check_backend
-from executive.testing.check_strategy import check_strategy
+from executive.testing.bench import Bench, Ended
+from executive.testing.check_backend import BackendBreach, check_backend
+from executive.testing.check_fault import FaultBreach, check_fault
+from executive.testing.check_hypothesis import HypothesisBreach, check_hypothesis
+from executive.testing.check_leaf import LeafBreach, check_leaf
+from executive.testing.check_localizer import LocalizerBreach, check_localizer
+from executive.testing.check_strategy import StrategyBreach, check_strategy
 from executive.testing.fake import BACKEND, FakeBackend, FakeWorld, OverheadLocalizer
 
-__all__ = ["BACKEND", "FakeBackend", "FakeWorld", "OverheadLocalizer", "check_backend", "check_strategy"]
+__all__ = [
+    "BACKEND",
+    "BackendBreach",
+    "Bench",
+    "Ended",
+    "FakeBackend",
+    "FakeWorld",
+    "FaultBreach",
+    "HypothesisBreach",
+    "LeafBreach",
+    "LocalizerBreach",
+    "OverheadLocalizer",
+    "StrategyBreach",
+    "check_backend",
+    "check_fault",
+    "check_hypothesis",
+    "check_leaf",
+    "check_localizer",
+    "check_strategy",
+]

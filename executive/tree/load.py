@@ -220,10 +220,8 @@ class _TreeReader:
             path = Path(word) if given else find("trees", word, self.source.folder(), mark)
         except ConfigError:
             known = [*self.trees.types, *names("trees", folder=self.source.folder())]
-            message = (
-                f'got the unknown node "{word}", expected a node or a tree{guess(word, known)}{_broken(word)}'
-            )
-            raise ConfigError([mark.problem(message)]) from None
+            message = f'got the unknown node "{word}", expected a node or a tree{guess(word, known)}'
+            raise ConfigError([mark.problem(message + _broken(word))]) from None
         if path in self.stack:
             chain = " > ".join(p.stem for p in (*self.stack[self.stack.index(path) :], path))
             message = f"got a tree inside itself ({chain}), expected no recursion"

@@ -20,6 +20,9 @@ from executive.core.registry.project import Project, current_project
 KINDS = group_of("kinds")
 MODULES = group_of("plugins")
 """Entry points of this group name modules, which are scanned as a project's files are."""
+OF_KINDS: Kind[Kind[Any]] = Kind(
+    "kind", "kinds", "What can be added.", Kind, name_of=lambda kind: kind.plural
+)
 T = TypeVar("T")
 Entries = dict[str, Entry]
 
@@ -55,6 +58,11 @@ def kinds() -> tuple[Kind[Any], ...]:
 def broken_kinds() -> tuple[Broken, ...]:
     """The kinds that cannot be loaded."""
     return _kinds(_path())[1]
+
+
+def kind_named(plural: str) -> Kind[Any]:
+    """One kind, and no other loaded. KeyError: no such kind; PluginError: it is broken."""
+    return cast("Kind[Any]", _installed(_path())[KINDS][plural].use(OF_KINDS))
 
 
 def kind_names() -> tuple[str, ...]:
@@ -106,10 +114,7 @@ def _twice(first: Entry, second: Entry) -> Entry:
 
 @cache
 def _kinds(path: tuple[str, ...]) -> tuple[tuple[Kind[Any], ...], tuple[Broken, ...]]:
-    of_kinds: Kind[Kind[Any]] = Kind(
-        "kind", "kinds", "What can be added.", Kind, name_of=lambda kind: kind.plural
-    )
-    tried = [entry.loaded(of_kinds) for entry in _installed(path).get(KINDS, {}).values()]
+    tried = [entry.loaded(OF_KINDS) for entry in _installed(path).get(KINDS, {}).values()]
     loaded = tuple(cast("Kind[Any]", thing) for thing, broken in tried if broken is None)
     return loaded, tuple(broken for _, broken in tried if broken is not None)
 
