@@ -9,7 +9,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from executive.inject.faults import CATEGORIES
+from executive.run.fault import CATEGORIES
 from executive.run.listing import entries
 
 PAGE = Path(__file__).parent / "faults.md"

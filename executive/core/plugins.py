@@ -17,6 +17,7 @@ LOCALIZERS = "longarm.localizers"
 FAULTS = "longarm.faults"
 COMMANDS = "longarm.commands"
 FILES = "longarm.files"
+INSTRUMENTS = "longarm.instruments"
 REPORTERS = "longarm.reporters"
 """By the file that marks a folder (`campaign` for campaign.json): folder → path of the report written."""
 

@@ -133,6 +133,10 @@ class RunJournal:
         along = self._segment.offset(self._pose.x_m, self._pose.y_m).along_m
         return behind + min(max(along, 0.0), self._segment.length_m)
 
+    def progress(self) -> float:
+        """The share of the route that lies behind the rover, 0 to 1."""
+        return self.along_route_m() / sum(s.length_m for s in self._route)
+
     def to_go_text(self) -> str:
         """What remains, for people."""
         remaining = sum(s.length_m for s in self._route) - self.along_route_m()

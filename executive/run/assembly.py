@@ -1,4 +1,4 @@
-"""A run put together: robot, faults, localizer, classification, pool and tree."""
+"""A run put together: robot, instruments, localizer, classification, pool and tree."""
 
 from __future__ import annotations
 
@@ -18,8 +18,6 @@ from executive.core.types import (
     Segment,
     Source,
 )
-from executive.inject.faults import TreeParts
-from executive.inject.schedule import FaultSchedule
 from executive.isc.classification import Classification
 from executive.isc.prediction import quat_from_heading_tilt
 from executive.navigation.belt_rest import RestingTracks
@@ -29,8 +27,10 @@ from executive.record.command_log import logged
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.record.versions import versions
+from executive.run.instrument import Context, Instrument, TreeParts
+from executive.run.instruments import Together, registered
+from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run
-from executive.run.scenario import ResolvedScenario
 from executive.tree.build import build
 from executive.tree.nodes.services import Services
 from executive.tree.strategies import strategy_trees
@@ -86,27 +86,27 @@ def _prepare(
 ) -> Run:
     route = scenario.mission.route()
     journal = RunJournal(recorder, backend.clock, route)
-    faults = FaultSchedule(scenario.faults, backend, scenario.seed)
-    journal.hear = faults.sightings.hear
-    strategies = faults.wrap_pool(strategies)
-    devices = logged(faults.wrap(backend.devices), journal.write)
+    instruments = _instruments(scenario, backend, journal)
+    journal.hear = instruments.hear
+    strategies = instruments.wrap_pool(strategies)
+    devices = logged(instruments.wrap_devices(backend.devices), journal.write)
     belts = RestingTracks(devices.tracks)
     devices = replace(devices, tracks=belts)
     services = Services(
         clock=backend.clock,
         devices=devices,
         rig=backend.rig,
-        localizer=faults.wrap_localizer(_localizer(make_localizer, devices, backend)),
+        localizer=instruments.wrap_localizer(_localizer(make_localizer, devices, backend)),
         classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
         pool=Pool(strategies, journal.strategy),
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
     built = build(scenario.tree, services, inputs, strategy_trees(strategies, scenario.instead))
-    faults.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
+    instruments.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
 
     def each_tick() -> None:
-        faults.tick(journal, route)
+        instruments.tick(backend.clock.now_s)
         telemetry = services.classification.telemetry
         problem = belts.astray(telemetry.tracks) if telemetry else None
         if problem is not None:
@@ -123,8 +123,14 @@ def _prepare(
         stopwatch=watch,
         time_limit_s=scenario.time_limit_s,
         each_tick=each_tick,
-        invalid=lambda: faults.conclude(journal),
+        invalid=instruments.conclude,
     )
+
+
+def _instruments(scenario: ResolvedScenario, backend: Backend, journal: RunJournal) -> Instrument:
+    """What takes part in this run, as one."""
+    context = Context(backend, scenario.seed, journal.write, journal.progress)
+    return Together([spec.make(scenario.of(spec), context) for spec in registered()])
 
 
 def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:

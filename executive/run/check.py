@@ -12,7 +12,7 @@ from executive.config.find import shown
 from executive.config.source import read
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
-from executive.run.scenario import as_scenario, resolve
+from executive.run.resolve import as_scenario, resolve
 from executive.tree.load import load_tree
 
 OWN = ("tree", "mission", "scenario")

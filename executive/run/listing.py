@@ -9,8 +9,7 @@ from pydantic import BaseModel
 
 from executive.config.describe import Parameter, parameters, properties
 from executive.core import plugins
-from executive.inject.faults import FaultSpec
-from executive.inject.profiles import names as profile_names
+from executive.run.fault import FaultSpec
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.nodes.base import REQUIRED, FromTree, PortSpec
 
@@ -36,7 +35,7 @@ def _fault(spec: FaultSpec) -> dict[str, Any]:
         "category": spec.category,
         "doc": spec.doc,
         "parameters": [asdict(parameter) for parameter in parameters(spec.model)],
-        "profiles": list(profile_names(spec.graded, spec.lasting)),
+        "profiles": list(spec.profiles),
         "lasting": spec.lasting,
         "tiers": list(spec.tiers),
         "backends": list(spec.backends),

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 from executive.core import plugins
 from executive.core.errors import ConfigError
-from executive.inject.entries import RESERVED
-from executive.inject.faults import FaultSpec
 from executive.pool.pool import Strategy
 from executive.record import History, events
-from executive.run.scenario import ResolvedScenario
+from executive.run.fault import load_fault
+from executive.run.resolved import ResolvedScenario
 from proving.coverage.items import Item
 from proving.coverage.recipes import Fault, at_node, for_item
 from proving.coverage.universe import Universe
+from proving.inject.entries import RESERVED
 from proving.scenario_data import Data, resolved
 
 DURATIONS: dict[str, tuple[str | None, ...]] = {"helped": ("5 min",), "failed": (None,)}
@@ -80,5 +80,4 @@ def _installed(fault: Fault) -> bool:
 
 
 def _lasting(kind: str) -> bool:
-    spec = plugins.load(plugins.FAULTS, kind, FaultSpec)
-    return isinstance(spec, FaultSpec) and spec.lasting
+    return load_fault(kind).lasting

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 
 from executive.core import plugins
 from executive.core.types import Reason
-from executive.inject.triggers import PHASES
 from executive.isc.hypotheses import Hypothesis
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 from proving.coverage import abilities
 from proving.coverage.abilities import Abilities
 from proving.coverage.items import Item
+from proving.inject.triggers import PHASES
 
 HALTED, GUARD = "halted", str(Reason.GUARD)
 VERDICTS = ("chosen", "helped", "failed")

@@ -9,8 +9,8 @@ from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import LongarmError
 from executive.core.ports import Backend
-from executive.inject.faults import Fault, FaultSpec
 from executive.isc.hypotheses import Hypothesis
+from executive.run.fault import Fault, FaultSpec
 
 if TYPE_CHECKING:
     from sim_pybullet.world_faults import Tally, WorldFaults

@@ -25,8 +25,9 @@ from executive.pool.pool import (
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.run.assembly import prior_pose
+from executive.run.resolve import as_scenario, resolve
+from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run, RunEnd, execute
-from executive.run.scenario import ResolvedScenario, as_scenario, resolve
 from executive.testing import FakeBackend, OverheadLocalizer
 from executive.tree.build import BuiltTree, build
 from executive.tree.nodes.base import Leaf

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from executive.core import plugins
-from executive.inject.faults import FaultSpec
+from executive.run.fault import FaultSpec
 from tests.proving.faults.scenario import run
 
 OUTCOMES = {"reached", "safe_hold", "help", "time_limit", "invalid", "error"}
