@@ -63,10 +63,14 @@ class MissionFile(Strict):
 
 
 class ScenarioFile(Strict):
-    """A mission, a world and a seed. `world` and `rig` are read further on; instruments own further keys."""
+    """A mission, a world and a seed. `world` and `rig` are read further on; instruments own further keys.
+
+    `project` names the project file where it is not that beside the scenario or above it.
+    """
 
     scenario: Name
     doc: str = ""
+    project: Annotated[str, Field(min_length=1)] | None = None
     mission: MissionFile
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     tier: Literal["full", "geometric"] = "full"

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from executive.config.backends import BackendRequest
-from executive.core import plugins
+from executive.config.localizer_kind import LOCALIZER_KIND
+from executive.core import registry
 from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
+from executive.core.registry import in_project
 from executive.pool.pool import Strategy
 from executive.record import History, events
 from executive.record.recorder import Recorder
@@ -25,6 +27,7 @@ from executive.record.run_folder import (
     write_traceback,
 )
 from executive.report import write_report
+from executive.report.reporter import REPORTER_KIND
 from executive.report.show import draw
 from executive.run.assembly import TICK_S, set_up, write_start
 from executive.run.judging import exit_code, judged
@@ -68,8 +71,13 @@ def run(file: Path, options: RunOptions) -> Finished:
 
 def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     """The same for a scenario already resolved; of the options, those that change it are without effect."""
+    with in_project(scenario.project):
+        return _run(scenario, options)
+
+
+def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     strategies = load_strategies()
-    localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
+    localizer = registry.get(LOCALIZER_KIND, scenario.file.localizer)
     watch = Stopwatch()
     folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
@@ -94,10 +102,9 @@ def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
 
 def report(folder: Path) -> Path:
     """(Re)write the report of a run or campaign folder from its record; RecordError where there is none."""
-    for name in plugins.found(plugins.REPORTERS):
+    for name in registry.names(REPORTER_KIND):
         if (folder / f"{name}.json").is_file():
-            reporter = cast("Callable[[Path], Path]", plugins.load(plugins.REPORTERS, name))
-            return reporter(folder)
+            return registry.get(REPORTER_KIND, name).write(folder)
     if not (folder / "record.mcap").is_file():
         raise RecordError(f"{folder}: got no record.mcap, expected a run or campaign folder")
     return write_report(folder, _tree_svg(folder))
@@ -169,7 +176,8 @@ def draw_run(folder: Path, form: str) -> str | bytes:
     if not (folder / "scenario.yaml").is_file():
         raise RecordError(f"{folder}: got no scenario.yaml, expected a run folder")
     scenario = resolve_scenario(folder / "scenario.yaml")
-    return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
+    with in_project(scenario.project):
+        return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
 
 
 def last_outcomes(folder: Path) -> dict[str, str]:

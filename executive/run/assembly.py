@@ -28,7 +28,7 @@ from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.record.versions import versions
 from executive.run.instrument import Context, Instrument, TreeParts
-from executive.run.instruments import Together, registered
+from executive.run.instruments import Together, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run
 from executive.tree.build import build
@@ -130,7 +130,7 @@ def _prepare(
 def _instruments(scenario: ResolvedScenario, backend: Backend, journal: RunJournal) -> Instrument:
     """What takes part in this run, as one."""
     context = Context(backend, scenario.seed, journal.write, journal.progress)
-    return Together([spec.make(scenario.of(spec), context) for spec in registered()])
+    return Together([spec.make(scenario.of(spec), context) for spec in instruments_there_are()])
 
 
 def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:

@@ -6,18 +6,19 @@ import each other (a simulation, the faults of the ports) register faults.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
+from executive.config.describe import parameters, properties
 from executive.config.validate import guess, listed
-from executive.core import plugins
+from executive.core import registry
 from executive.core.clock import Clock
-from executive.core.errors import PluginError
 from executive.core.ports import Backend, Devices, Localizer
+from executive.core.registry import Kind
 from executive.isc.hypotheses import Hypothesis
 from executive.pool.pool import Strategy
 from executive.run.instrument import TreeParts
@@ -117,11 +118,45 @@ def hypothesis_names() -> tuple[str, ...]:
     return tuple(str(hypothesis) for hypothesis in Hypothesis)
 
 
-def load_fault(name: str) -> FaultSpec:
-    """The kind of fault registered under this name; PluginError if it is broken. KeyError: no such name."""
-    spec = plugins.load(plugins.FAULTS, name, FaultSpec)
+def broken_promises(spec: FaultSpec) -> Iterator[str]:
+    """A sentence for each promise that a fault's declaration breaks."""
+    if not spec.doc.strip():
+        yield "it does not say what happens (doc)"
     known = hypothesis_names()
     if spec.hypothesis and spec.hypothesis not in known:
-        message = f'fault {name}: unknown hypothesis "{spec.hypothesis}", expected {listed(known)}'
-        raise PluginError(message + guess(spec.hypothesis, known))
-    return spec
+        expected = f"expected {listed(known)}{guess(spec.hypothesis, known)}"
+        yield f'unknown hypothesis "{spec.hypothesis}", {expected}'
+    for role in ("node", "value", "strategy"):
+        parameter = getattr(spec, role)
+        if parameter is not None and parameter not in spec.model.model_fields:
+            yield f"its {role} is the parameter {parameter!r}, which {spec.model.__name__} does not have"
+
+
+def page(spec: FaultSpec) -> dict[str, Any]:
+    """What a scenario may say of a fault, where it acts, and what it should lead to."""
+    return {
+        "category": spec.category,
+        "doc": spec.doc,
+        "parameters": [asdict(parameter) for parameter in parameters(spec.model)],
+        "profiles": list(spec.profiles),
+        "lasting": spec.lasting,
+        "tiers": list(spec.tiers),
+        "backends": list(spec.backends),
+        "hypothesis": spec.hypothesis,
+        "model": properties(spec.model),
+    }
+
+
+FAULT_KIND: Kind[FaultSpec] = Kind(
+    "fault", "faults", "What can go wrong, injected.", FaultSpec, check=broken_promises, page=page
+)
+
+
+def load_fault(name: str) -> FaultSpec:
+    """The kind of fault registered under this name; PluginError if it is broken. KeyError: no such name."""
+    return registry.get(FAULT_KIND, name)
+
+
+def every_fault() -> tuple[FaultSpec, ...]:
+    """All that can be used, by name."""
+    return tuple(registry.every(FAULT_KIND).values())

@@ -16,6 +16,7 @@ from py_trees.behaviour import Behaviour
 from executive.config.source import Source
 from executive.core.errors import Problem
 from executive.core.ports import Backend, Devices, Localizer
+from executive.core.registry import Kind
 from executive.core.rig import RigCalibration
 from executive.core.types import Outcome
 from executive.pool.pool import Strategy
@@ -161,3 +162,8 @@ class InstrumentSpec(Generic[S]):
     def judge(self, settings: S, records: Records) -> Judgement:
         """What the records say; also asked of a run that was killed, so it may rely on nothing else."""
         return Judgement()
+
+
+INSTRUMENT_KIND: Kind[InstrumentSpec[Any]] = Kind(
+    "instrument", "instruments", "What takes part in a run beside the executive.", InstrumentSpec
+)

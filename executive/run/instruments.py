@@ -6,29 +6,22 @@ from collections.abc import Sequence
 from graphlib import TopologicalSorter
 from typing import Any
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import PluginError
 from executive.core.ports import Devices, Localizer
 from executive.pool.pool import Strategy
-from executive.run.instrument import Instrument, InstrumentSpec, TreeParts
+from executive.run.instrument import INSTRUMENT_KIND, Instrument, InstrumentSpec, TreeParts
 
 
-def registered() -> tuple[InstrumentSpec[Any], ...]:
+def instruments_there_are() -> tuple[InstrumentSpec[Any], ...]:
     """Every registered instrument, by name but for what comes `after` what; PluginError if one is broken."""
-    specs = {name: _loaded(name) for name in sorted(plugins.found(plugins.INSTRUMENTS))}
+    specs = {name: registry.get(INSTRUMENT_KIND, name) for name in registry.names(INSTRUMENT_KIND)}
     before = {name: [other for other in spec.after if other in specs] for name, spec in specs.items()}
     owners: dict[str, str] = {}
     for key, name in ((key, name) for name, spec in specs.items() for key in spec.keys):
         if owners.setdefault(key, name) != name:
             raise PluginError(f'instrument {name}: the scenario key "{key}" belongs to {owners[key]} already')
     return tuple(specs[name] for name in TopologicalSorter(before).static_order())
-
-
-def _loaded(name: str) -> InstrumentSpec[Any]:
-    spec: InstrumentSpec[Any] = plugins.load(plugins.INSTRUMENTS, name, InstrumentSpec)
-    if spec.name != name:
-        raise PluginError(f"instrument {name}: its spec is named {spec.name}, expected {name}")
-    return spec
 
 
 class Together(Instrument):

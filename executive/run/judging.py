@@ -8,7 +8,7 @@ from typing import Any
 from executive.record import History, digest
 from executive.record.result import RunFigures, summary_of
 from executive.run.instrument import Records
-from executive.run.instruments import registered
+from executive.run.instruments import instruments_there_are
 from executive.run.resolved import ResolvedScenario
 
 REACHED, OTHERWISE, DEFECT = 0, 1, 3
@@ -25,7 +25,7 @@ def judged(
     history, world = History.of(record), History.of(truth) if truth.is_file() else History.empty()
     result: dict[str, Any] = summary_of(history, world, digest(record), figures)
     records = Records(history, world, scenario.rig, result)
-    found = [spec.judge(scenario.of(spec), records) for spec in registered()]
+    found = [spec.judge(scenario.of(spec), records) for spec in instruments_there_are()]
     result["expectations"] = [row for each in found for row in each.expectations]
     result["safety"] = [row for each in found for row in each.safety]
     opinions = [each.met for each in found if each.met is not None]

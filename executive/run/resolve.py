@@ -8,21 +8,23 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from executive.config.backends import BackendSpec
+from executive.config.backends import BACKEND_KIND, BackendSpec
 from executive.config.distributions import drawn
 from executive.config.find import find, portable, shown
+from executive.config.localizer_kind import LOCALIZER_KIND
 from executive.config.mission import mission_problems
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.overrides import override
+from executive.config.project import named_project, with_defaults
+from executive.config.registered import registered
 from executive.config.rig_overrides import rig_from
 from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
-from executive.config.validate import shown as shown_data
-from executive.core import plugins
 from executive.core.chance import generator
 from executive.core.errors import ConfigError, Problem
+from executive.core.registry import Project, in_project
 from executive.run.instrument import InstrumentSpec, Setting
-from executive.run.instruments import registered
+from executive.run.instruments import instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
@@ -44,18 +46,25 @@ def resolve_source(
     source: Source, seed: int | None = None, tier: str | None = None, overrides: Sequence[str] = ()
 ) -> ResolvedScenario:
     """The same from a file already read, or from a part of one."""
-    source = as_scenario(source)
-    for number, text in enumerate(overrides, 1):
-        source = override(source, text, number)
-    source = _with_value(source, "seed", seed)
-    source = _with_value(source, "tier", tier)
-    return resolve(source)
+    with in_project(named_project(source)):
+        source = as_scenario(source)
+        for number, text in enumerate(overrides, 1):
+            source = override(source, text, number)
+        source = _with_value(source, "seed", seed)
+        source = _with_value(source, "tier", tier)
+        return resolve(source)
 
 
 def resolve(source: Source) -> ResolvedScenario:
     """The same from data already read."""
+    project = named_project(source)
+    with in_project(project):
+        return _resolve(with_defaults(source, project), project)
+
+
+def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
     problems = Problems()
-    instruments = registered()
+    instruments = instruments_there_are()
     for spec in instruments:
         source = spec.expand(source)
     seed = source.data.get("seed", 0) if isinstance(source.data, dict) else 0
@@ -84,14 +93,16 @@ def resolve(source: Source) -> ResolvedScenario:
     problems.check()
     if file is None or backend is None or world is None or rig is None or tree is None or tree_path is None:
         raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
+    named = str(project.file) if project is not None else None
     mission = file.mission.model_copy(update={"tree": portable("trees", tree_path)})
     return ResolvedScenario(
-        file.model_copy(update={"mission": mission, "world": {}, "rig": {}}),
+        file.model_copy(update={"mission": mission, "project": named, "world": {}, "rig": {}}),
         world,
         rig,
         settings,
         tree,
         backend,
+        project,
         inputs or {},
     )
 
@@ -146,21 +157,13 @@ def _setting(source: Source, backend: str) -> Setting:
     return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
 
 
-def _check_known(source: Source, what: str, group: str, name: str) -> None:
-    known = sorted(plugins.found(group))
-    if name not in known:
-        message = f"got {shown_data(name)}, expected a {what}: {listed(known)}{guess(name, known)}"
-        raise ConfigError([source.at((what,)).problem(message)])
-
-
 def _check_localizer(source: Source) -> None:
     default = str(ScenarioFile.model_fields["localizer"].default)
-    _check_known(source, "localizer", plugins.LOCALIZERS, _text(source, "localizer", default))
+    registered(LOCALIZER_KIND, _text(source, "localizer", default), source.at(("localizer",)))
 
 
 def _backend(source: Source, name: str) -> BackendSpec:
-    _check_known(source, "backend", plugins.BACKENDS, name)
-    return plugins.load(plugins.BACKENDS, name, BackendSpec)
+    return registered(BACKEND_KIND, name, source.at(("backend",)))
 
 
 def _world(source: Source, backend: BackendSpec) -> BaseModel:

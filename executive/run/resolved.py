@@ -12,9 +12,10 @@ from pydantic import BaseModel
 from executive.config.backends import BackendSpec
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.rig_overrides import rig_fields
+from executive.core.registry import Project, in_project
 from executive.core.rig import RigCalibration
 from executive.run.instrument import InstrumentSpec
-from executive.run.instruments import registered
+from executive.run.instruments import instruments_there_are
 from executive.tree.load import Instead, load_tree
 from executive.tree.spec import TreeSpec
 from executive.tree.strategies import load_strategies, strategy_trees
@@ -33,6 +34,8 @@ class ResolvedScenario:
     """What each instrument has read of its keys, by the instrument's name."""
     tree: TreeSpec
     backend: BackendSpec
+    project: Project | None
+    """Whose plug-ins it uses."""
     inputs: Mapping[str, object]
     """The mission's `tree_inputs`, in SI, for the tree's ports of these names."""
     instead: Instead = field(default_factory=dict)
@@ -60,8 +63,9 @@ class ResolvedScenario:
 
     def with_trees(self, instead: Instead) -> ResolvedScenario:
         """The same run if these tree files said something else; ConfigError where that cannot be loaded."""
-        tree = load_tree(self.mission.tree, instead=instead)
-        strategy_trees(load_strategies(), instead)
+        with in_project(self.project):
+            tree = load_tree(self.mission.tree, instead=instead)
+            strategy_trees(load_strategies(), instead)
         return replace(self, tree=tree, instead=instead)
 
     def of(self, spec: InstrumentSpec[S]) -> S:
@@ -74,7 +78,7 @@ class ResolvedScenario:
         data["world"] = self.world.model_dump(mode="json", by_alias=True, exclude_none=True)
         data["rig"] = rig_fields(self.rig)
         time_limit = data.pop("time_limit")
-        for spec in registered():
+        for spec in instruments_there_are():
             data |= spec.dump(self.of(spec))
         data["time_limit"] = time_limit
         return yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=110)

@@ -8,14 +8,16 @@ from typing import Any
 
 from executive.config.file_kinds import file_kind, file_kinds
 from executive.config.models import MissionFile, ScenarioFile
-from executive.core.values import VALUE_TYPES
-from executive.run.instruments import registered
+from executive.config.project import ProjectFile
+from executive.core import registry
+from executive.core.values import VALUE_TYPE_KIND
+from executive.run.instruments import instruments_there_are
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.file import TreeFile
 from executive.tree.nodes.base import REQUIRED, Direction, PortSpec
 from executive.tree.spec import GUARDS
 
-_OWN = ("tree", "mission", "scenario")
+_OWN = ("tree", "mission", "scenario", "project")
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
@@ -26,9 +28,13 @@ def kinds() -> tuple[str, ...]:
 
 def schema(kind: str) -> dict[str, Any]:
     """The schema of one kind of file. PluginError when the plug-in that reads it cannot be loaded."""
-    own = {"tree": _tree, "mission": _mission, "scenario": _scenario}
+    own = {"tree": _tree, "mission": _mission, "scenario": _scenario, "project": _project}
     made = own[kind]() if kind in own else file_kind(kind).schema()
     return {"$schema": DIALECT, "title": f"Longarm {kind}"} | made
+
+
+def _project() -> dict[str, Any]:
+    return ProjectFile.model_json_schema(by_alias=True)
 
 
 def _mission() -> dict[str, Any]:
@@ -40,7 +46,7 @@ def _scenario() -> dict[str, Any]:
     inline = copy.deepcopy(made["properties"]["mission"])
     name = {"type": "string", "description": "a mission file: a path or a bare name"}
     made["properties"]["mission"] = {"anyOf": [name, inline]}
-    for spec in registered():
+    for spec in instruments_there_are():
         made["properties"] |= spec.schema(made["$defs"])
     return made
 
@@ -50,7 +56,7 @@ def _tree() -> dict[str, Any]:
     made["properties"]["root"] = {"$ref": "#/$defs/node"}
     made["$defs"] = made.get("$defs", {}) | {"node": _node()}
     declaration = made["$defs"]["PortDeclaration"]
-    declaration["properties"]["type"] = {"enum": list(VALUE_TYPES)}
+    declaration["properties"]["type"] = {"enum": list(registry.names(VALUE_TYPE_KIND))}
     return made
 
 

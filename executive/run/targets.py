@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator, Set
 
 from executive.config.source import Place, Source
 from executive.config.validate import guess
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import Problem
+from executive.pool.kind import STRATEGY_KIND
 from executive.tree.addresses import means
 from executive.tree.spec import TreeSpec, walk
 from executive.tree.strategies import load_strategies, strategy_trees
@@ -36,7 +37,7 @@ def strange_values(source: Source, named: Iterable[Named], tree: TreeSpec) -> It
 
 def strange_strategies(source: Source, named: Iterable[Named]) -> Iterator[Problem]:
     """Names of no installed strategy."""
-    return _strangers(source, named, set(plugins.found(plugins.STRATEGIES)), "the unknown strategy {}")
+    return _strangers(source, named, set(registry.names(STRATEGY_KIND)), "the unknown strategy {}")
 
 
 def _node_paths(tree: TreeSpec) -> Iterator[str]:

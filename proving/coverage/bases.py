@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import ConfigError
 from executive.pool.pool import Strategy
 from executive.record import History, events
-from executive.run.fault import load_fault
+from executive.run.fault import FAULT_KIND, load_fault
 from executive.run.resolved import ResolvedScenario
 from proving.coverage.items import Item
 from proving.coverage.recipes import Fault, at_node, for_item
@@ -76,7 +76,7 @@ def resolved_or_none(data: Data) -> ResolvedScenario | None:
 
 
 def _installed(fault: Fault) -> bool:
-    return next(iter(fault)) in plugins.found(plugins.FAULTS)
+    return next(iter(fault)) in registry.names(FAULT_KIND)
 
 
 def _lasting(kind: str) -> bool:

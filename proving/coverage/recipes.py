@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from executive.core import plugins
 from executive.core.types import Reason
 from executive.pool.pool import Strategy
-from executive.run.fault import FaultSpec, load_fault
+from executive.run.fault import FaultSpec, every_fault
 from proving.coverage.items import Item
 
 Fault = dict[str, Any]
@@ -89,7 +88,7 @@ def of_kind(spec: FaultSpec, strategies: Iterable[str]) -> Iterator[Fault]:
 
 def specs() -> list[FaultSpec]:
     """Every kind of fault that is installed."""
-    return [load_fault(name) for name in plugins.found(plugins.FAULTS)]
+    return list(every_fault())
 
 
 def for_item(item: Item, strategies: dict[str, Strategy]) -> Iterator[Fault]:

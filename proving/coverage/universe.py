@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.types import Reason
 from executive.isc.hypotheses import Hypothesis
+from executive.run.fault import FAULT_KIND
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 from proving.coverage import abilities
 from proving.coverage.abilities import Abilities
@@ -42,7 +43,7 @@ class Universe:
         nodes = [Item("node", name, word) for name, words in self.words.items() for word in words]
         chosen = [Item("strategy", name, word) for name in self.strategies for word in VERDICTS]
         phases = [Item("phase", phase, "entered") for phase in PHASES]
-        faults = [Item("fault", name, "fired") for name in plugins.found(plugins.FAULTS)]
+        faults = [Item("fault", name, "fired") for name in registry.every(FAULT_KIND)]
         led = [Item("hypothesis", str(h), "led") for h in Hypothesis]
         return (*nodes, *chosen, *phases, *faults, *led)
 

@@ -16,9 +16,9 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from executive.config.registered import registered
 from executive.config.source import Place, Source
-from executive.config.validate import Problems, guess, listed, parse, shown
-from executive.core import plugins
+from executive.config.validate import Problems, listed, parse, shown
 from executive.core.errors import ConfigError
 from executive.core.units import (
     DURATION,
@@ -26,8 +26,9 @@ from executive.core.units import (
     quantity,
     written,
 )
+from executive.pool.kind import STRATEGY_KIND
 from executive.record.signals import LIVE_TYPES
-from executive.run.fault import FaultSpec, load_fault
+from executive.run.fault import FAULT_KIND, FaultSpec
 from executive.run.instrument import Setting
 from executive.tree.expressions.guards import parse_guard
 from executive.tree.expressions.typed import GuardError
@@ -136,12 +137,7 @@ def _fault(source: Source, place: Place, entry: dict[str, Any], setting: Setting
 
 
 def _spec(source: Source, place: Place, kind: str, setting: Setting) -> FaultSpec:
-    known = sorted(plugins.found(plugins.FAULTS))
-    if kind not in known:
-        expected = listed(known) if known else "no fault at all, since none is installed"
-        message = f'got the unknown fault "{kind}", expected {expected}{guess(kind, known)}'
-        raise ConfigError([source.key_at(place).problem(message)])
-    spec = load_fault(kind)
+    spec = registered(FAULT_KIND, kind, source.key_at(place))
     fits = (("backend", setting.backend, spec.backends), ("tier", setting.tier, spec.tiers))
     for what, got, able in fits:
         if able and got not in able:
@@ -169,11 +165,8 @@ def _start(source: Source, place: Place, entry: dict[str, Any], setting: Setting
     if start.waypoint is not None and start.waypoint >= setting.waypoints:
         message = f"got way-point {start.waypoint}, expected 0 to {setting.waypoints - 1}"
         raise ConfigError([source.at((*place, "from", "waypoint")).problem(message)])
-    strategies = sorted(plugins.found(plugins.STRATEGIES))
-    if start.strategy is not None and start.strategy not in strategies:
-        message = f'got the unknown strategy "{start.strategy}", expected {listed(strategies)}'
-        place = (*place, "from", "strategy")
-        raise ConfigError([source.at(place).problem(message + guess(start.strategy, strategies))])
+    if start.strategy is not None:
+        registered(STRATEGY_KIND, start.strategy, source.at((*place, "from", "strategy")))
     return start
 
 

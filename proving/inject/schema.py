@@ -6,9 +6,8 @@ from typing import Any
 
 from executive.config import distributions
 from executive.config.describe import properties
-from executive.core import plugins
 from executive.core.units import DURATION, articled
-from executive.run.fault import FaultSpec, load_fault
+from executive.run.fault import FaultSpec, every_fault
 from proving.inject.profiles import STEP, Profile
 from proving.inject.triggers import Trigger
 
@@ -20,7 +19,7 @@ def faults(defs: Schema) -> Schema:
     defs["trigger"] = _inlined(Trigger.model_json_schema(), defs)
     defs["profile"] = {"anyOf": [{"const": STEP}, _inlined(Profile.model_json_schema(), defs)]}
     defs["distribution"] = _distribution()
-    specs = [load_fault(name) for name in sorted(plugins.found(plugins.FAULTS))]
+    specs = every_fault()
     defs["fault"] = {"oneOf": [_fault(spec, defs) for spec in specs]}
     defs["group"] = _group()
     return {"type": "array", "items": {"anyOf": [_ref("fault"), _ref("group")]}}

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from executive.config.registered import registered
 from executive.config.source import Place, Source
 from executive.config.validate import guess, listed
-from executive.core import plugins
-from executive.core.errors import Problem
+from executive.core.errors import ConfigError, Problem
+from executive.pool.kind import STRATEGY_KIND
 from executive.run.fault import hypothesis_names
 from executive.run.targets import Named
 from executive.tree.expressions.typed import GuardError
@@ -45,9 +46,8 @@ def expect_problems(source: Source, faults: Sequence[str] | None) -> Iterator[Pr
         for key in ("detected", "diagnosed", "recovered"):
             yield from _strangers(source, _texts(source, key, "fault"), "fault", faults)
     yield from _strangers(source, _texts(source, "diagnosed", "as"), "hypothesis", hypothesis_names())
-    strategies = sorted(plugins.found(plugins.STRATEGIES))
     for key in ("strategies_tried", "strategies_not_tried"):
-        yield from _strangers(source, _texts(source, key), "strategy", strategies)
+        yield from _no_strategies(source, _texts(source, key))
 
 
 def steps(source: Source) -> Iterator[Named]:
@@ -89,6 +89,14 @@ def _texts(source: Source, key: str, field: str | None = None) -> Iterator[Named
             at, member = (*at, field), member.get(field)
         if isinstance(member, str):
             yield at, member
+
+
+def _no_strategies(source: Source, named: Iterable[Named]) -> Iterator[Problem]:
+    for place, name in named:
+        try:
+            registered(STRATEGY_KIND, name, source.at(place))
+        except ConfigError as error:
+            yield from error.problems
 
 
 def _strangers(source: Source, named: Iterable[Named], what: str, known: Sequence[str]) -> Iterator[Problem]:

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from docs.list_scenarios import PAGE, lesson, page
-from executive.core import plugins
+from executive.core import registry
+from executive.run.fault import FAULT_KIND
 from proving.inject import INSTRUMENT as FAULTS
 from proving.judge import INSTRUMENT as JUDGE
 from proving.suite.collect import collect
@@ -38,7 +39,7 @@ def suite():
 
 def test_every_fault_of_the_catalogue_has_a_scenario(suite):
     injected = {fault.spec.name for each in suite for fault in each.scenario.of(FAULTS)}
-    assert set(plugins.found(plugins.FAULTS)) <= injected
+    assert set(registry.names(FAULT_KIND)) <= injected
 
 
 def test_every_kind_of_onset_and_profile_is_shown(suite):

@@ -9,9 +9,10 @@ from executive.config.find import find, names
 from executive.config.mission import load_mission
 from executive.config.source import Mark
 from executive.config.validate import listed
-from executive.core import plugins
-from executive.core.errors import ConfigError, PluginError
+from executive.core import registry
+from executive.core.errors import ConfigError
 from executive.core.rig import RigCalibration
+from executive.run.fault import FAULT_KIND
 from executive.run.resolve import resolve_scenario
 from proving.inject import INSTRUMENT as FAULTS
 
@@ -76,7 +77,7 @@ def test_every_float_survives_the_dump_bit_for_bit(folder, x, elevation, limit, 
 
 def test_a_mission_is_a_scenario_with_defaults(folder):
     problems = problems_of("missions/short.yaml", overrides=["backend=plian"])
-    assert "expected a backend" in problems[0]
+    assert "the unknown backend" in problems[0]
     assert 'did you mean "plain"?' in problems[0]
     scenario = resolve_scenario("missions/short.yaml", overrides=["backend=plain"])
     assert (scenario.name, scenario.seed, scenario.tier) == ("short", 0, "full")
@@ -84,7 +85,7 @@ def test_a_mission_is_a_scenario_with_defaults(folder):
 
 
 def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
-    faults = listed(sorted(plugins.found(plugins.FAULTS)))
+    faults = listed(sorted(registry.names(FAULT_KIND)))
     (folder / "scenarios" / "dark.yaml").write_text(
         "scenario: dark\nmission: short\nseed: -1\ntier: ful\nbackend: plain\n"
         "world: {light: {sun_elevaton: 35 deg}, mast_height: 30}\n"
@@ -159,7 +160,10 @@ def test_a_tier_that_the_backend_cannot_play_is_refused(folder):
 
 def test_a_plugin_that_cannot_be_loaded_is_named(folder):
     path = rewritten(folder, "backend: plain", "backend: broken")
-    with pytest.raises(PluginError, match=r"longarm.backends: broken = third_party_plugin:MISSING"):
+    with pytest.raises(
+        ConfigError,
+        match=r"dark.yaml:4:10: backend broken: .*longarm.backends: broken = third_party_plugin:MISSING",
+    ):
         resolve_scenario(path)
 
 

@@ -28,7 +28,6 @@ from executive.isc.classification import Assessment
 from executive.pool.pool import Situation
 from executive.tree.build import build
 from executive.tree.load import load_tree_text
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import (
     FromTree,
     In,
@@ -36,6 +35,7 @@ from executive.tree.nodes.base import (
     Leaf,
     Out,
 )
+from executive.tree.nodes.kind import leaves
 
 
 class Act(Leaf):
@@ -99,7 +99,7 @@ class Pose(Leaf):
         return Outcome(Reason.DONE)
 
 
-TEST_LEAVES: dict[str, type[Leaf]] = LEAVES | {
+TEST_LEAVES: dict[str, type[Leaf]] = leaves() | {
     "act": Act,
     "note": Note,
     "visit": Visit,

@@ -5,11 +5,11 @@ import json
 import pytest
 
 from executive.cli import invoke
-from executive.core import plugins
+from executive.core import registry
 from executive.core.types import PoseEstimate, Source
 from executive.record import History, events
 from executive.run.app import RunOptions, run
-from executive.run.fault import load_fault
+from executive.run.fault import FAULT_KIND, load_fault
 
 SCENARIO = """\
 scenario: short
@@ -112,7 +112,7 @@ def test_the_catalogue_lists_every_fault_with_its_parameters(capsys):
 
 
 def test_every_fault_leads_to_a_hypothesis_that_exists():
-    for name in plugins.found(plugins.FAULTS):
+    for name in registry.names(FAULT_KIND):
         assert load_fault(name).name == name  # checked there
 
 

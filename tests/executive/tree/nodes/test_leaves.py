@@ -29,7 +29,6 @@ from executive.pool.pool import Pool
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.testing import FakeBackend, FakeWorld, OverheadLocalizer
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import (
     Constant,
     Leaf,
@@ -37,6 +36,7 @@ from executive.tree.nodes.base import (
     Store,
     Trace,
 )
+from executive.tree.nodes.kind import leaves
 from executive.tree.nodes.services import Services
 
 SEGMENT = Segment(Point(2.0, 0.0), Point(3.0, 0.0), 0.03, 0.25, 0.03)
@@ -94,14 +94,14 @@ class Bench:
         )
         given = {"pose": self.classification.predicted().on(SEGMENT), "segment": SEGMENT, **values}
         bindings = {}
-        for port in LEAVES[kind].ports():
+        for port in leaves()[kind].ports():
             if port.direction.value == "in":
                 bindings[port.name] = Constant(given.get(port.name, port.default))
             else:
                 bindings[port.name] = Slot(self.store, port.name)
                 bindings[port.name].write(given.get(port.name))
         if kind not in self.leaves:
-            self.leaves[kind] = LEAVES[kind](kind, kind, services, bindings, self.trace)
+            self.leaves[kind] = leaves()[kind](kind, kind, services, bindings, self.trace)
         leaf = self.leaves[kind]
         ended: list[Outcome[object]] = []
         self.trace.note = lambda path, outcome: ended.append(outcome)
@@ -210,7 +210,7 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("localise", Reason.DONE, nothing, {}),
     *(
         ("localise", reason, sees(reason), {"quality": Quality.PRECISE})
-        for reason in LEAVES["localise"].outcomes
+        for reason in leaves()["localise"].outcomes
         if reason is not Reason.DONE
     ),
     ("not_overshot", Reason.DONE, nothing, {"target": AHEAD, "within": 0.03}),
@@ -266,5 +266,5 @@ def test_a_leaf_ends_for_the_reason_it_declares(
 
 
 def test_every_declared_outcome_of_every_leaf_has_its_case() -> None:
-    declared = {(name, reason) for name, leaf in LEAVES.items() for reason in leaf.outcomes}
+    declared = {(name, reason) for name, leaf in leaves().items() for reason in leaf.outcomes}
     assert {(kind, reason) for kind, reason, *_ in CASES} == declared

@@ -1,50 +1,65 @@
-"""What there is to use: nodes, strategies, faults, backends, told from their own declarations."""
+"""The catalogue: what there is of each kind, told from the declarations themselves."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, fields, is_dataclass
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 from pydantic import BaseModel
 
-from executive.config.describe import Parameter, parameters, properties
-from executive.core import plugins
-from executive.run.fault import FaultSpec
+from executive.config.describe import Parameter, properties
+from executive.core import registry
+from executive.core.registry import Broken, Kind
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.nodes.base import REQUIRED, FromTree, PortSpec
+from executive.tree.nodes.kind import LEAF_KIND
 
 ANYWHERE = ("tiers", "backends")  # where nothing is said, all of them
-GROUPS = {"strategies": plugins.STRATEGIES, "faults": plugins.FAULTS, "backends": plugins.BACKENDS}
+Page = dict[str, Any]
 
 
-def entries(kind: str) -> dict[str, dict[str, Any]]:
-    """Name → what there is to say of it. PluginError when a plug-in cannot be loaded."""
-    if kind == "nodes":
+def entries(listing: str) -> dict[str, Page]:
+    """Name → what there is to say of it; what is broken is left out (`broken`)."""
+    if listing == "nodes":
         return {name: _node(node) for name, node in sorted(node_types().items())}
-    group = GROUPS[kind]
-    return {name: _told(plugins.load(group, name)) for name in sorted(plugins.found(group))}
+    if listing == "plugins":
+        return _plugins()
+    kind = _kind(listing)
+    return {name: _page(kind, thing) for name, thing in registry.every(kind).items()}
 
 
-def _told(plugin: object) -> dict[str, Any]:
-    return _fault(plugin) if isinstance(plugin, FaultSpec) else _plugin(plugin)
+def broken(listing: str) -> tuple[Broken, ...]:
+    """What a listing leaves out, and why."""
+    if listing == "plugins":
+        kinds = [registry.broken(kind) for kind in registry.kinds()]
+        return tuple(dict.fromkeys((*registry.broken_kinds(), *(b for of_kind in kinds for b in of_kind))))
+    return registry.broken(LEAF_KIND if listing == "nodes" else _kind(listing))
 
 
-def _fault(spec: FaultSpec) -> dict[str, Any]:
-    """What a scenario may say of a fault, where it acts, and what it should lead to."""
+def _kind(listing: str) -> Kind[Any]:
+    return next(kind for kind in registry.kinds() if kind.plural == listing.replace("-", "_"))
+
+
+def _page(kind: Kind[Any], thing: Any) -> Page:
+    return dict(kind.page(thing)) if kind.page is not None else _fields(thing)
+
+
+def _plugins() -> dict[str, Page]:
+    """Package or file → how many of each kind it adds, and their names."""
+    found: dict[str, Page] = {}
+    for kind in registry.kinds():
+        for name, entry in registry.entries(kind.plural).items():
+            found.setdefault(entry.origin(), {}).setdefault(kind.plural, []).append(name)
+    for module in registry.modules():
+        found.setdefault(module.source, {})
     return {
-        "category": spec.category,
-        "doc": spec.doc,
-        "parameters": [asdict(parameter) for parameter in parameters(spec.model)],
-        "profiles": list(spec.profiles),
-        "lasting": spec.lasting,
-        "tiers": list(spec.tiers),
-        "backends": list(spec.backends),
-        "hypothesis": spec.hypothesis,
-        "model": properties(spec.model),
+        origin: {"doc": ", ".join(f"{len(names)} {plural}" for plural, names in adds.items())} | adds
+        for origin, adds in sorted(found.items())
     }
 
 
-def _node(node: NodeType) -> dict[str, Any]:
+def _node(node: NodeType) -> Page:
     return {
         "category": node.category,
         "doc": node.doc,
@@ -53,8 +68,8 @@ def _node(node: NodeType) -> dict[str, Any]:
     }
 
 
-def _port(port: PortSpec) -> dict[str, Any]:
-    told: dict[str, Any] = {
+def _port(port: PortSpec) -> Page:
+    told: Page = {
         "name": port.name,
         "type": port.type.name,
         "direction": port.direction.value,
@@ -70,11 +85,15 @@ def _port(port: PortSpec) -> dict[str, Any]:
     return told
 
 
-def _plugin(plugin: object) -> dict[str, Any]:
-    """A plug-in's own fields, as far as JSON can say them; models by their schema."""
-    if not is_dataclass(plugin):
-        return {"doc": (plugin.__doc__ or "").strip().split("\n")[0]}
-    return {f.name: _plain(getattr(plugin, f.name)) for f in fields(plugin) if f.name != "name"}
+def _fields(thing: object) -> Page:
+    """A declaration's own fields, as far as JSON can say them; models by their schema."""
+    ports = getattr(thing, "ports", None)
+    doc = " ".join((thing.__doc__ or "").strip().split("\n\n")[0].split())
+    if isinstance(thing, type) and callable(ports):
+        return {"doc": doc, "ports": [_port(port) for port in ports()]}
+    if isinstance(thing, type) or not is_dataclass(thing):
+        return {"doc": doc}
+    return {f.name: _plain(getattr(thing, f.name)) for f in fields(thing) if f.name != "name"}
 
 
 def _plain(value: Any) -> Any:
@@ -82,14 +101,14 @@ def _plain(value: Any) -> Any:
         return properties(value)
     if isinstance(value, int | float | str | None):
         return value
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         return {str(_plain(k)): _plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple | set | frozenset):
         return [_plain(part) for part in value]
     return getattr(value, "__name__", None) or str(value)
 
 
-def as_text(name: str, entry: dict[str, Any]) -> str:
+def as_text(name: str, entry: Page) -> str:
     """One entry for people: its doc, then a line per port, parameter or field."""
     lines = [name + (f"  ({entry['category']})" if "category" in entry else ""), f"  {entry.get('doc', '')}"]
     lines += [_port_line(port) for port in entry.get("ports", ())]
@@ -103,7 +122,7 @@ def as_text(name: str, entry: dict[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _port_line(port: dict[str, Any]) -> str:
+def _port_line(port: Page) -> str:
     default = "" if port["required"] else f", default {port.get('default')}"
     return f"  {port['direction']:5} {port['name']}: {port['type']}{default}   {port['help']}"
 
