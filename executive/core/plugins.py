@@ -17,6 +17,10 @@ LOCALIZERS = "longarm.localizers"
 FAULTS = "longarm.faults"
 COMMANDS = "longarm.commands"
 FILES = "longarm.files"
+POLICIES = "longarm.policies"
+MODULES = "longarm.plugins"
+"""Modules: the hypotheses and channels defined there are registered."""
+
 REPORTERS = "longarm.reporters"
 """By the file that marks a folder (`campaign` for campaign.json): folder → path of the report written."""
 

@@ -30,7 +30,7 @@ from executive.inject import profiles as profiles
 from executive.inject.faults import FaultSpec
 from executive.inject.profiles import Profile
 from executive.inject.triggers import Trigger
-from executive.record.signals import LIVE_TYPES
+from executive.record.signals import live_types
 from executive.tree.expressions.guards import parse_guard
 from executive.tree.expressions.typed import GuardError
 
@@ -170,7 +170,7 @@ def _start(source: Source, place: Place, entry: dict[str, Any], setting: Setting
     start = parse(source, Trigger, (*place, "from"))
     if start.when is not None:
         try:
-            parse_guard(start.when, LIVE_TYPES).check(LIVE_TYPES)
+            parse_guard(start.when, live_types()).check(live_types())
         except GuardError as error:
             mark = source.at((*place, "from", "when"))
             raise ConfigError([mark.problem(error.message, error.offset)]) from None

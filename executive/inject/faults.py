@@ -16,7 +16,7 @@ from pydantic import BaseModel
 from executive.core.clock import Clock
 from executive.core.ports import Backend, Devices, Localizer
 from executive.core.types import Outcome
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 
 CATEGORIES = (
     *("tracks", "terrain", "tether", "head", "cameras", "markers", "light"),

@@ -12,7 +12,7 @@ from executive.inject.entries import ResolvedFault
 from executive.inject.faults import Cue, Fault, TreeParts
 from executive.inject.onsets import Onset, Sightings
 from executive.inject.profiles import Shape
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import events
 from executive.record.journal import RunJournal
 

@@ -10,7 +10,7 @@ from executive.config.validate import guess, listed
 from executive.core import plugins
 from executive.core.errors import Problem
 from executive.inject.entries import ResolvedFault
-from executive.isc.hypotheses import Hypothesis
+from executive.isc import hypothesis_names
 from executive.judge.temporal import (
     Always,
     Eventually,
@@ -45,8 +45,7 @@ def expect_problems(source: Source, faults: Sequence[ResolvedFault] | None) -> I
         names = [fault.name for fault in faults]
         for key in ("detected", "diagnosed", "recovered"):
             yield from _strangers(source, _texts(source, key, "fault"), "fault", names)
-    hypotheses = [str(h) for h in Hypothesis]
-    yield from _strangers(source, _texts(source, "diagnosed", "as"), "hypothesis", hypotheses)
+    yield from _strangers(source, _texts(source, "diagnosed", "as"), "hypothesis", hypothesis_names())
     strategies = sorted(plugins.found(plugins.STRATEGIES))
     for key in ("strategies_tried", "strategies_not_tried"):
         yield from _strangers(source, _texts(source, key), "strategy", strategies)

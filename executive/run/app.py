@@ -16,7 +16,7 @@ from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
 from executive.judge.expectations import judge
 from executive.judge.safety import safety_rows
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import History, digest, events
 from executive.record.recorder import Recorder
 from executive.record.result import RunFigures, summary_of, write_result

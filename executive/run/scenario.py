@@ -32,6 +32,7 @@ from executive.inject.entries import (
     ungrouped,
 )
 from executive.judge.expected import expect_problems
+from executive.pool import DEFAULT_POLICY
 from executive.run.targets import target_problems
 from executive.tree.literals import literal
 from executive.tree.load import Instead, load_tree
@@ -69,6 +70,11 @@ class ResolvedScenario:
     @property
     def tier(self) -> str:
         return self.file.tier
+
+    @property
+    def policy(self) -> str:
+        """How the pool chooses, by name."""
+        return self.file.policy or DEFAULT_POLICY
 
     @property
     def expect(self) -> Expect:
@@ -134,6 +140,7 @@ def resolve(source: Source) -> ResolvedScenario:
     backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
     backend = problems.attempt(_backend, source, backend_name)
     problems.attempt(_check_localizer, source)
+    problems.attempt(_check_policy, source)
     world = problems.attempt(_world, source, backend) if backend else None
     rig = problems.attempt(rig_from, source, ("rig",))
     setting = _setting(source, backend_name)
@@ -218,6 +225,10 @@ def _check_known(source: Source, what: str, group: str, name: str) -> None:
 def _check_localizer(source: Source) -> None:
     default = str(ScenarioFile.model_fields["localizer"].default)
     _check_known(source, "localizer", plugins.LOCALIZERS, _text(source, "localizer", default))
+
+
+def _check_policy(source: Source) -> None:
+    _check_known(source, "policy", plugins.POLICIES, _text(source, "policy", DEFAULT_POLICY))
 
 
 def _backend(source: Source, name: str) -> BackendSpec:

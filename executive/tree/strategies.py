@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from executive.core import plugins
-from executive.pool.pool import Strategy
+from executive.core.errors import PluginError
+from executive.pool import Strategy
+from executive.pool.kind import broken_promises
 from executive.tree.load import AS_IT_IS, Instead, load_tree
 from executive.tree.spec import TreeSpec
 
 
 def load_strategies() -> tuple[Strategy, ...]:
-    """Every strategy registered, by name; PluginError for one that is not a `Strategy`."""
+    """Every strategy registered, by name; PluginError for one that does not keep what a strategy must."""
     loaded = []
     for name in plugins.found(plugins.STRATEGIES):
         strategy = plugins.load(plugins.STRATEGIES, name, Strategy)
-        if isinstance(strategy, Strategy):
-            loaded.append(strategy)
+        if broken := tuple(broken_promises(strategy)):
+            raise PluginError(f"strategy {name}: {'; '.join(broken)}")
+        loaded.append(strategy)
     return tuple(loaded)
 
 

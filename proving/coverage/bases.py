@@ -11,7 +11,7 @@ from executive.core import plugins
 from executive.core.errors import ConfigError
 from executive.inject.entries import RESERVED
 from executive.inject.faults import FaultSpec
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import History, events
 from executive.run.scenario import ResolvedScenario
 from proving.coverage.items import Item

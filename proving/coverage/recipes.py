@@ -8,7 +8,7 @@ from typing import Any
 from executive.core import plugins
 from executive.core.types import Reason
 from executive.inject.faults import FaultSpec
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from proving.coverage.items import Item
 
 Fault = dict[str, Any]

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from executive.core import plugins
 from executive.core.types import Reason
 from executive.inject.triggers import PHASES
-from executive.isc.hypotheses import Hypothesis
+from executive.isc import hypothesis_names
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 from proving.coverage import abilities
 from proving.coverage.abilities import Abilities
@@ -43,7 +43,7 @@ class Universe:
         chosen = [Item("strategy", name, word) for name in self.strategies for word in VERDICTS]
         phases = [Item("phase", phase, "entered") for phase in PHASES]
         faults = [Item("fault", name, "fired") for name in plugins.found(plugins.FAULTS)]
-        led = [Item("hypothesis", str(h), "led") for h in Hypothesis]
+        led = [Item("hypothesis", h, "led") for h in hypothesis_names()]
         return (*nodes, *chosen, *phases, *faults, *led)
 
 

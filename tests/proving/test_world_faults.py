@@ -18,7 +18,7 @@ from executive.core.types import (
     Source,
 )
 from executive.inject.faults import FaultSpec
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc.attitude import quat_from_heading_tilt
 from executive.testing.fake import FakeBackend, FakeWorld
 from perception.localizer.localizer import LedStereoLocalizer
 from sim_pybullet import BACKEND
