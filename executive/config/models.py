@@ -76,6 +76,9 @@ class ScenarioFile(Strict):
     tier: Literal["full", "geometric"] = "full"
     backend: Name = "pybullet"
     localizer: Name = "led_stereo"
+    policy: Annotated[
+        Name | None, Field(description="how the pool chooses among strategies (default first_fitted)")
+    ] = None
     world: dict[str, Any] = Field(default_factory=dict)
     rig: dict[str, Any] = Field(default_factory=dict)
     time_limit: Annotated[Duration, Field(gt=0)] = 24 * 3600.0

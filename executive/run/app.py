@@ -15,7 +15,7 @@ from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
 from executive.core.registry import in_project
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import History, events
 from executive.record.recorder import Recorder
 from executive.record.result import RunFigures, write_result

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from executive.config.backends import BackendRequest
 from executive.core.clock import Stopwatch
 from executive.core.errors import PluginError
 from executive.core.ports import Backend, Devices, Localizer
+from executive.core.rig import RigCalibration
 from executive.core.types import (
     Outcome,
     PoseEstimate,
@@ -18,10 +20,10 @@ from executive.core.types import (
     Segment,
     Source,
 )
-from executive.isc.classification import Classification
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc import Classification, known_channels, known_hypotheses
+from executive.isc.attitude import quat_from_heading_tilt
 from executive.navigation.belt_rest import RestingTracks
-from executive.pool.pool import Pool, Strategy
+from executive.pool import Pool, Strategy, known_policy
 from executive.record import events
 from executive.record.command_log import logged
 from executive.record.journal import RunJournal
@@ -97,8 +99,16 @@ def _prepare(
         devices=devices,
         rig=backend.rig,
         localizer=instruments.wrap_localizer(_localizer(make_localizer, devices, backend)),
-        classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
-        pool=Pool(strategies, journal.strategy),
+        classification=Classification(
+            prior_pose(route[0]),
+            backend.rig,
+            backend.clock,
+            known_hypotheses(),
+            known_channels(),
+            announce=journal.assessment,
+            markers_expected=_markers_expected(make_localizer, backend.rig),
+        ),
+        pool=Pool(strategies, journal.strategy, known_policy(scenario.policy)),
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
@@ -107,8 +117,8 @@ def _prepare(
 
     def each_tick() -> None:
         instruments.tick(backend.clock.now_s)
-        telemetry = services.classification.telemetry
-        problem = belts.astray(telemetry.tracks) if telemetry else None
+        sensed = services.classification.tracker.sensed
+        problem = belts.astray(sensed.tracks) if sensed else None
         if problem is not None:
             built.trace.alarm = Outcome(Reason.DEVICE, problem)
 
@@ -138,3 +148,9 @@ def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:
         raise PluginError(f"got a localizer {make!r}, expected something to call")
     made: Localizer = make(devices=devices, rig=backend.rig, clock=backend.clock)
     return made
+
+
+def _markers_expected(localizer: object, rig: RigCalibration) -> int:
+    """How many markers of this rig a localizer looks for; 0 where it does not say that it uses any."""
+    expected: Callable[[RigCalibration], int] = getattr(localizer, "expected_markers", lambda rig: 0)
+    return expected(rig)

@@ -19,8 +19,8 @@ from executive.core import registry
 from executive.core.clock import Clock
 from executive.core.ports import Backend, Devices, Localizer
 from executive.core.registry import Kind
-from executive.isc.hypotheses import Hypothesis
-from executive.pool.pool import Strategy
+from executive.isc import hypothesis_names
+from executive.pool import Strategy
 from executive.run.instrument import TreeParts
 
 CATEGORIES = (
@@ -111,11 +111,6 @@ class FaultSpec:
         """The profiles that it may have, by the words that a scenario uses."""
         passing = () if self.lasting else ("intermittent", "random")
         return ("step", *(("ramp",) if self.graded else ()), *passing)
-
-
-def hypothesis_names() -> tuple[str, ...]:
-    """What a fault may lead to."""
-    return tuple(str(hypothesis) for hypothesis in Hypothesis)
 
 
 def broken_promises(spec: FaultSpec) -> Iterator[str]:

@@ -19,7 +19,7 @@ from executive.core.ports import Backend, Devices, Localizer
 from executive.core.registry import Kind
 from executive.core.rig import RigCalibration
 from executive.core.types import Outcome
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record.history import History
 from executive.record.rows import Row
 from executive.tree.spec import TreeSpec

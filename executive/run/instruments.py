@@ -9,7 +9,7 @@ from typing import Any
 from executive.core import registry
 from executive.core.errors import PluginError
 from executive.core.ports import Devices, Localizer
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.run.instrument import INSTRUMENT_KIND, Instrument, InstrumentSpec, TreeParts
 
 

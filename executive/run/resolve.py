@@ -23,6 +23,7 @@ from executive.config.validate import Problems, guess, listed, parse
 from executive.core.chance import generator
 from executive.core.errors import ConfigError, Problem
 from executive.core.registry import Project, in_project
+from executive.pool.known import DEFAULT_POLICY, POLICY_KIND
 from executive.run.instrument import InstrumentSpec, Setting
 from executive.run.instruments import instruments_there_are
 from executive.run.resolved import ResolvedScenario
@@ -75,6 +76,7 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
     backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
     backend = problems.attempt(_backend, source, backend_name)
     problems.attempt(_check_localizer, source)
+    problems.attempt(_check_policy, source)
     world = problems.attempt(_world, source, backend) if backend else None
     rig = problems.attempt(rig_from, source, ("rig",))
     settings = _settings(source, instruments, _setting(source, backend_name), problems)
@@ -160,6 +162,10 @@ def _setting(source: Source, backend: str) -> Setting:
 def _check_localizer(source: Source) -> None:
     default = str(ScenarioFile.model_fields["localizer"].default)
     registered(LOCALIZER_KIND, _text(source, "localizer", default), source.at(("localizer",)))
+
+
+def _check_policy(source: Source) -> None:
+    registered(POLICY_KIND, _text(source, "policy", DEFAULT_POLICY), source.at(("policy",)))
 
 
 def _backend(source: Source, name: str) -> BackendSpec:

@@ -14,6 +14,7 @@ from executive.config.models import MissionFile, ScenarioFile
 from executive.config.rig_overrides import rig_fields
 from executive.core.registry import Project, in_project
 from executive.core.rig import RigCalibration
+from executive.pool.known import DEFAULT_POLICY
 from executive.run.instrument import InstrumentSpec
 from executive.run.instruments import instruments_there_are
 from executive.tree.load import Instead, load_tree
@@ -56,6 +57,11 @@ class ResolvedScenario:
     @property
     def tier(self) -> str:
         return self.file.tier
+
+    @property
+    def policy(self) -> str:
+        """How the pool chooses, by name."""
+        return self.file.policy or DEFAULT_POLICY
 
     @property
     def time_limit_s(self) -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from executive.core import registry
 from executive.core.errors import ConfigError
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import History, events
 from executive.run.fault import FAULT_KIND, load_fault
 from executive.run.resolved import ResolvedScenario

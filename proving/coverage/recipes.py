@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from executive.core.types import Reason
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.run.fault import FaultSpec, every_fault
 from proving.coverage.items import Item
 

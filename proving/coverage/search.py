@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from shutil import rmtree
 
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import History
 from executive.run.resolved import ResolvedScenario
 from proving.coverage.bases import Base, candidates, resolved_or_none

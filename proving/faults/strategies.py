@@ -11,7 +11,7 @@ from py_trees.common import Status
 from pydantic import Field
 
 from executive.core.units import Duration
-from executive.pool.pool import Situation, Strategy
+from executive.pool import Situation, Strategy
 from executive.run.fault import Cue, FaultSpec
 from proving.faults.altered import Counted
 from proving.faults.parameters import Parameters

@@ -27,7 +27,7 @@ from executive.core.units import (
     written,
 )
 from executive.pool.kind import STRATEGY_KIND
-from executive.record.signals import LIVE_TYPES
+from executive.record.signals import live_types
 from executive.run.fault import FAULT_KIND, FaultSpec
 from executive.run.instrument import Setting
 from executive.tree.expressions.guards import parse_guard
@@ -158,7 +158,7 @@ def _start(source: Source, place: Place, entry: dict[str, Any], setting: Setting
     start = parse(source, Trigger, (*place, "from"))
     if start.when is not None:
         try:
-            parse_guard(start.when, LIVE_TYPES).check(LIVE_TYPES)
+            parse_guard(start.when, live_types()).check(live_types())
         except GuardError as error:
             mark = source.at((*place, "from", "when"))
             raise ConfigError([mark.problem(error.message, error.offset)]) from None

@@ -6,7 +6,7 @@ from collections import Counter
 
 from executive.core.types import Call
 from executive.record import events
-from executive.record.signals import LIVE_TYPES, heard
+from executive.record.signals import heard, live_types
 from executive.tree.addresses import means
 from executive.tree.expressions.guards import parse_guard
 from proving.inject.triggers import Trigger
@@ -56,7 +56,7 @@ class Onset:
 
     def __init__(self, trigger: Trigger) -> None:
         self._trigger = trigger
-        self._condition = None if trigger.when is None else parse_guard(trigger.when, LIVE_TYPES)
+        self._condition = None if trigger.when is None else parse_guard(trigger.when, live_types())
         self._was: bool | None = None
         self._since_s: float | None = None
 

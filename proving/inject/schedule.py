@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from executive.core.chance import generator
 from executive.core.ports import Devices, Localizer
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import events
 from executive.run.fault import Cue, Fault
 from executive.run.instrument import Context, Instrument, TreeParts

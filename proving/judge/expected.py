@@ -8,8 +8,8 @@ from executive.config.registered import registered
 from executive.config.source import Place, Source
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
+from executive.isc import hypothesis_names
 from executive.pool.kind import STRATEGY_KIND
-from executive.run.fault import hypothesis_names
 from executive.run.targets import Named
 from executive.tree.expressions.typed import GuardError
 from proving.judge.expect import LISTS_OF_STEPS, Expect

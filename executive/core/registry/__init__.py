@@ -21,6 +21,7 @@ from executive.core.registry.sources import (
     Module,
     broken_kinds,
     entries,
+    in_order,
     kind_names,
     kinds,
     modules,
@@ -44,6 +45,7 @@ __all__ = [
     "kinds",
     "modules",
     "names",
+    "ordered",
     "own_name",
     "project_file",
     "source_of",
@@ -66,6 +68,12 @@ def every(kind: Kind[T]) -> dict[str, T]:
     """All of a kind that can be used, by name."""
     loaded = {name: entry.loaded(kind) for name, entry in entries(kind.plural).items()}
     return {name: cast("T", thing) for name, (thing, broken) in loaded.items() if broken is None}
+
+
+def ordered(kind: Kind[T]) -> tuple[T, ...]:
+    """All of a kind that can be used, in the order in which it is registered."""
+    loaded = [entry.loaded(kind) for entry in in_order(kind.plural).values()]
+    return tuple(cast("T", thing) for thing, broken in loaded if broken is None)
 
 
 def broken(kind: Kind[Any]) -> tuple[Broken, ...]:

@@ -34,12 +34,17 @@ class Module:
 
 
 def entries(plural: str) -> Entries:
-    """Everything registered of one kind, by name, nothing of it loaded but modules that are scanned."""
+    """Everything registered of one kind, by name; nothing of it is loaded but modules that are scanned."""
+    return dict(sorted(in_order(plural).items()))
+
+
+def in_order(plural: str) -> Entries:
+    """The same in order of registration: entry points by name, then modules as they define it."""
     found = dict(_installed(_path()).get(group_of(plural), {}))
     for module in modules():
         for name, entry in module.adds.get(plural, {}).items():
             found[name] = _twice(found[name], entry) if name in found else entry
-    return dict(sorted(found.items()))
+    return found
 
 
 def modules() -> tuple[Module, ...]:

@@ -11,7 +11,7 @@ from typing import Any
 
 from executive.core.units import DURATION, PLAIN, dimension
 from executive.core.values import ValueType
-from executive.record.signals import TYPES
+from executive.record.signals import types as signal_types
 from executive.tree.expressions.grammar import COMPARISONS, LOGIC, Terms
 from executive.tree.expressions.typed import (
     Expression,
@@ -38,9 +38,12 @@ _FORMULA_WORDS = LOGIC | {"->", *COMPARISONS}
 _MAKE: dict[str, Callable[[str, Formula, Formula], Formula]] = {"and": And, "or": Or}
 
 
-def parse_formula(text: str, types: Mapping[str, ValueType[Any]] = TYPES) -> Formula:
-    """GuardError, with the character it is about, unless names, dimensions and bounds all fit."""
-    parser = _Parser(text, types)
+def parse_formula(text: str, types: Mapping[str, ValueType[Any]] | None = None) -> Formula:
+    """GuardError, with the character it is about, unless names, dimensions and bounds all fit.
+
+    `types` are those of the names it may speak of (None: all signals).
+    """
+    parser = _Parser(text, signal_types() if types is None else types)
     formula = parser.formula()
     parser.expect_end()
     return formula

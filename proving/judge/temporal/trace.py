@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from executive.core.types import Array
 from executive.record.history import History
-from executive.record.signals import SIGNALS
+from executive.record.signals import signals
 from proving.judge.temporal.formula import Bounds
 from proving.judge.temporal.windows import Indices
 
@@ -64,12 +64,12 @@ def on_one_grid(samples: Mapping[str, Samples], end_s: float) -> Trace:
 
 def recorded(names: Iterable[str], history: History, world: History) -> Trace:
     """The named signals of a run: from its record, and from the simulator's own for those of the truth."""
-    samples = {name: _samples(name, world if SIGNALS[name].truth else history) for name in names}
+    samples = {name: _samples(name, world if signals()[name].truth else history) for name in names}
     return on_one_grid(samples, history.end_s)
 
 
 def _samples(name: str, history: History) -> Samples:
-    signal = SIGNALS[name]
+    signal = signals()[name]
     told = [(at.time_s, signal.read(at.event)) for at in history.all(signal.event)]
     given = [(time_s, value) for time_s, value in told if value is not None]
     return np.array([t for t, _ in given], dtype=np.float64), np.array(

@@ -9,7 +9,7 @@ import yaml
 from executive.core.errors import ConfigError, PluginError
 from executive.run.app import RunOptions, run
 from executive.run.instrument import Instrument
-from executive.run.instruments import Together, registered
+from executive.run.instruments import Together, instruments_there_are
 from executive.run.resolve import resolve_scenario
 
 PLANTED = """
@@ -81,25 +81,25 @@ def short(tmp_path):
 
 
 def test_the_judge_comes_after_the_faults():
-    names = [spec.name for spec in registered()]
+    names = [spec.name for spec in instruments_there_are()]
     assert names.index("faults") < names.index("expect")
 
 
 def test_an_instrument_comes_after_those_it_names(patience):
     patience()
-    assert [spec.name for spec in registered()] == ["faults", "expect", "patience"]
+    assert [spec.name for spec in instruments_there_are()] == ["faults", "expect", "patience"]
 
 
 def test_a_key_has_one_owner(patience):
     patience(keys='("faults",)')
     with pytest.raises(PluginError, match='the scenario key "faults" belongs to faults already'):
-        registered()
+        instruments_there_are()
 
 
 def test_a_foreign_instrument_owns_its_key(patience, short):
     patience()
     scenario = resolve_scenario(short("patience: 4\n"))
-    assert scenario.of(registered()[-1]).patience == 4
+    assert scenario.of(instruments_there_are()[-1]).patience == 4
     assert yaml.safe_load(scenario.dump())["patience"] == 4
 
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from executive.core.types import PoseEstimate, Source
-from executive.isc.prediction import quat_from_heading_tilt
-from executive.isc.reach import Reach
+from executive.isc.attitude import quat_from_heading_tilt
+from executive.isc.gate import Reach
 
 
 def at(x=3.0, y=0.0, heading_deg=0.0, sigma=0.001):
