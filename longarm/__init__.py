@@ -1,6 +1,6 @@
 """What authors of plug-ins write against (docs/plugins.md). It is stable; deeper imports are private.
 
-Control nodes and decorators, devices, channels and signals join here.
+Control nodes and decorators, devices and signals join here.
 """
 
 from __future__ import annotations
@@ -31,9 +31,10 @@ from executive.core.values import (
     TEXT,
     ValueType,
 )
-from executive.inject.faults import Cue, Fault, FaultSpec, TreeParts
-from executive.isc.hypotheses import Hypothesis
-from executive.pool.pool import Situation, Strategy
+from executive.isc import Categorical, Channel, Comparison, Concern, Gaussian, Hypothesis, Measured
+from executive.pool import Decision, Memory, Option, Policy, Situation, Strategy
+from executive.run.fault import Cue, Fault, FaultSpec
+from executive.run.instrument import Context, Instrument, InstrumentSpec, Judgement, Records, TreeParts
 from executive.tree.nodes.action import ActionLeaf
 from executive.tree.nodes.base import FromTree, In, InOut, Leaf, Out
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from executive.testing import Bench as Bench
     from executive.testing import Ended as Ended
     from executive.testing import check_backend as check_backend
+    from executive.testing import check_channel as check_channel
     from executive.testing import check_fault as check_fault
     from executive.testing import check_hypothesis as check_hypothesis
     from executive.testing import check_leaf as check_leaf
@@ -69,29 +71,44 @@ __all__ = [
     "BackendSpec",
     "Bench",
     "Breach",
+    "Categorical",
+    "Channel",
+    "Comparison",
+    "Concern",
     "ConfigError",
+    "Context",
     "Cue",
+    "Decision",
     "Devices",
     "Ended",
     "Fault",
     "FaultSpec",
     "FileKind",
     "FromTree",
+    "Gaussian",
     "Hypothesis",
     "In",
     "InOut",
+    "Instrument",
+    "InstrumentSpec",
+    "Judgement",
     "Kind",
     "Leaf",
     "LocaliseRequest",
     "Localizer",
     "LongarmError",
+    "Measured",
+    "Memory",
+    "Option",
     "Out",
     "Outcome",
     "PluginError",
     "Point",
+    "Policy",
     "PoseEstimate",
     "Quality",
     "Reason",
+    "Records",
     "Reporter",
     "Segment",
     "Situation",
@@ -99,6 +116,7 @@ __all__ = [
     "TreeParts",
     "ValueType",
     "check_backend",
+    "check_channel",
     "check_fault",
     "check_hypothesis",
     "check_leaf",

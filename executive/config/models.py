@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from executive.config.expect import Expect, Name
 from executive.config.validate import Strict
 from executive.core.types import Point, Segment
 from executive.core.units import Duration, Length
 
+Name = Annotated[str, Field(min_length=1, max_length=100)]
 Margin = Annotated[Length, Field(gt=0)]
 
 
@@ -63,10 +63,9 @@ class MissionFile(Strict):
 
 
 class ScenarioFile(Strict):
-    """A mission, a world, a seed, faults, expectations. `world`, `rig` and `faults` are read further on.
+    """A mission, a world and a seed. `world` and `rig` are read further on; instruments own further keys.
 
     `project` names the project file where it is not that beside the scenario or above it.
-    `expected_to_fail` says why the expectations do not hold yet; the run's safety must, all the same.
     """
 
     scenario: Name
@@ -77,9 +76,9 @@ class ScenarioFile(Strict):
     tier: Literal["full", "geometric"] = "full"
     backend: Name = "pybullet"
     localizer: Name = "led_stereo"
+    policy: Annotated[
+        Name | None, Field(description="how the pool chooses among strategies (default first_fitted)")
+    ] = None
     world: dict[str, Any] = Field(default_factory=dict)
     rig: dict[str, Any] = Field(default_factory=dict)
-    faults: tuple[dict[str, Any], ...] = ()
-    expect: Expect = Expect()
-    expected_to_fail: Annotated[str, Field(min_length=1, max_length=500)] | None = None
     time_limit: Annotated[Duration, Field(gt=0)] = 24 * 3600.0

@@ -13,7 +13,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from executive.config.expect import Name
+from executive.config.models import Name
 from executive.config.source import Mark, Source, read
 from executive.config.validate import Problems, Strict, parse
 from executive.core.errors import ConfigError

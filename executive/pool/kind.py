@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from executive.config.validate import guess
 from executive.core.registry import Kind
 from executive.core.types import Reason
-from executive.isc.hypotheses import Hypothesis
-from executive.pool.pool import Strategy
+from executive.isc import NOMINAL, hypothesis_names
+from executive.pool.strategy import Strategy
 
 
 def broken_promises(strategy: Strategy) -> Iterator[str]:
@@ -20,20 +21,28 @@ def broken_promises(strategy: Strategy) -> Iterator[str]:
         yield f"tree file not found: {strategy.tree} (is it in package-data?)"
     if not strategy.answers and not strategy.reasons:
         yield "it answers nothing: no hypothesis, no reason"
-    answered: list[tuple[object, float]] = [*strategy.answers.items(), *strategy.reasons.items()]
-    for what, fit in answered:
-        if not isinstance(what, Hypothesis | Reason):
-            yield f"it answers {what!r}, expected a hypothesis or a reason"
+    yield from _unknown(strategy)
+    for what, fit in [*strategy.answers.items(), *strategy.reasons.items()]:
         if not 0.0 < fit <= 1.0:
             yield f"got the fitness {fit} for {what}, expected one in (0, 1]"
-    if Hypothesis.NOMINAL in strategy.answers:
-        yield "it answers nominal, about which nothing is to be done"
     if not strategy.cost_s > 0.0:
         yield f"got a cost of {strategy.cost_s} s, expected more than 0"
     if not strategy.excursion_m >= 0.0:
         yield f"got an excursion of {strategy.excursion_m} m, expected 0 or more"
     if strategy.tries_per_segment < 1:
         yield f"got {strategy.tries_per_segment} tries per segment, expected 1 or more"
+
+
+def _unknown(strategy: Strategy) -> Iterator[str]:
+    known = hypothesis_names()
+    for name in strategy.answers:
+        if name == NOMINAL:
+            yield "it answers nominal, about which nothing is to be done"
+        elif name not in known:
+            yield f"it answers the unknown hypothesis {name!r}{guess(name, known)}"
+    for reason in strategy.reasons:
+        if not isinstance(reason, Reason):
+            yield f"it answers the reason {reason!r}, expected a Reason"
 
 
 STRATEGY_KIND: Kind[Strategy] = Kind(

@@ -14,7 +14,7 @@ from executive.config.source import read
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
 from executive.core.registry import PROJECT_FILE, in_project
-from executive.run.scenario import as_scenario, resolve
+from executive.run.resolve import as_scenario, resolve
 from executive.tree.load import load_tree
 
 OWN = ("tree", "mission", "scenario")

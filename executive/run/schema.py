@@ -6,13 +6,12 @@ import copy
 from enum import Enum
 from typing import Any
 
-from executive.config.expect import LISTS
 from executive.config.file_kinds import file_kind, file_kinds
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.project import ProjectFile
 from executive.core import registry
 from executive.core.values import VALUE_TYPE_KIND
-from executive.inject import schema as fault_schema
+from executive.run.instruments import instruments_there_are
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.file import TreeFile
 from executive.tree.nodes.base import REQUIRED, Direction, PortSpec
@@ -47,11 +46,8 @@ def _scenario() -> dict[str, Any]:
     inline = copy.deepcopy(made["properties"]["mission"])
     name = {"type": "string", "description": "a mission file: a path or a bare name"}
     made["properties"]["mission"] = {"anyOf": [name, inline]}
-    expect = made["$defs"]["Expect"]["properties"]
-    for name_of_list in LISTS:
-        several = {key: expect[name_of_list].pop(key) for key in ("type", "items")}
-        expect[name_of_list]["anyOf"] = [several["items"], several]
-    made["properties"]["faults"] = fault_schema.faults(made["$defs"])
+    for spec in instruments_there_are():
+        made["properties"] |= spec.schema(made["$defs"])
     return made
 
 

@@ -2,8 +2,8 @@
 
 from executive.testing.bench import Bench, Ended
 from executive.testing.check_backend import BackendBreach, check_backend
+from executive.testing.check_diagnosis import check_channel, check_hypothesis
 from executive.testing.check_fault import FaultBreach, check_fault
-from executive.testing.check_hypothesis import HypothesisBreach, check_hypothesis
 from executive.testing.check_leaf import LeafBreach, check_leaf
 from executive.testing.check_localizer import LocalizerBreach, check_localizer
 from executive.testing.check_strategy import StrategyBreach, check_strategy
@@ -17,12 +17,12 @@ __all__ = [
     "FakeBackend",
     "FakeWorld",
     "FaultBreach",
-    "HypothesisBreach",
     "LeafBreach",
     "LocalizerBreach",
     "OverheadLocalizer",
     "StrategyBreach",
     "check_backend",
+    "check_channel",
     "check_fault",
     "check_hypothesis",
     "check_leaf",

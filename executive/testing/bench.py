@@ -18,8 +18,8 @@ from py_trees.common import Status
 from executive.config.backends import BackendRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import Outcome, Point, Reason, Segment
-from executive.isc.classification import Classification
-from executive.pool.pool import Pool, Strategy
+from executive.isc import Classification, known_channels, known_hypotheses
+from executive.pool import FIRST_FITTED, Pool, Strategy
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.run.assembly import TICK_S, prior_pose
@@ -76,8 +76,10 @@ class Bench:
             devices=self.backend.devices,
             rig=self.backend.rig,
             localizer=OverheadLocalizer(self.backend.devices, self.backend.rig, clock),
-            classification=Classification(prior_pose(route[0]), self.backend.rig, clock),
-            pool=Pool(strategies, journal.strategy),
+            classification=Classification(
+                prior_pose(route[0]), self.backend.rig, clock, known_hypotheses(), known_channels()
+            ),
+            pool=Pool(strategies, journal.strategy, FIRST_FITTED),
             journal=journal,
         )
 

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from executive.core.errors import Breach
-from executive.inject.faults import Cue, Fault, FaultSpec
-from executive.inject.kind import broken_promises
+from executive.run.fault import Cue, Fault, FaultSpec, broken_promises
 from executive.testing.bench import Bench
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from executive.core.errors import Breach, ConfigError
+from executive.pool import Strategy
 from executive.pool.kind import broken_promises
-from executive.pool.pool import Strategy
 from executive.tree.load import load_tree
 
 

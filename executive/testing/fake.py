@@ -36,7 +36,7 @@ from executive.core.types import (
     Vec2,
     View,
 )
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc.attitude import quat_from_heading_tilt
 
 T = TypeVar("T")
 PIXELS_PER_M = 1000.0
@@ -201,8 +201,8 @@ class FakeCameras:
         c, s = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
         plan = np.array([(x, y) for x, y, _ in robot.rig.markers.positions_plc_m])
         seen = plan @ np.array([[c, s], [-s, c]]) + (robot.x_m, robot.y_m)
-        noise = robot.rng.normal(0.0, robot.world.pixel_sigma, (2, 4, 2))
-        sigma = np.full((2, 4), max(robot.world.pixel_sigma, 1e-3))
+        noise = robot.rng.normal(0.0, robot.world.pixel_sigma, (2, len(plan), 2))
+        sigma = np.full((2, len(plan)), max(robot.world.pixel_sigma, 1e-3))
         return Centres(robot.clock.now_s, shot, PIXELS_PER_M * seen + noise, sigma, FakeHead(robot).read())
 
 
@@ -273,6 +273,11 @@ class OverheadLocalizer:
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
         self._devices, self._rig, self._clock = devices, rig, clock
 
+    @staticmethod
+    def expected_markers(rig: RigCalibration) -> int:
+        """All of them."""
+        return len(rig.markers.positions_plc_m)
+
     def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
         source = Source.TREND if request.quality is Quality.TREND else Source.MARKERS
         return _Located(self._devices.cameras.take(Shot(leds=(0, 1, 2, 4, 8))), self._rig, source)
@@ -321,7 +326,7 @@ class _Located:
             quat_site_body=quat_from_heading_tilt(heading, 0.0, 0.0),
             covariance=np.diag([sigma_m**2] * 3 + [1e-6, 1e-6, sigma_rad**2]),
             source=self.source,
-            markers=4,
+            markers=len(plan),
         )
 
 

@@ -226,7 +226,7 @@ class _TreeReader:
         if broken is not None:
             return str(broken)
         near = guess(word, [*self.trees.types, *names("trees", folder=self.source.folder())])
-        return f'got the unknown node "{word}", expected a node or a tree{near}{not_loaded()}'
+        return f'got the unknown node "{word}", expected a node or a tree{near}{not_loaded(LEAF_KIND)}'
 
     def _ports(
         self, place: Place, kind: NodeType, given: Mapping[str, Any], local: Problems

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from executive.core import registry
 from executive.core.errors import ConfigError
 from executive.core.registry import Broken
+from executive.pool import Strategy
 from executive.pool.kind import STRATEGY_KIND
-from executive.pool.pool import Strategy
 from executive.tree.load import AS_IT_IS, Instead, load_tree
 from executive.tree.spec import TreeSpec
 

@@ -65,6 +65,11 @@ class LedStereoLocalizer:
         self.last: Localisation | None = None
 
     @staticmethod
+    def expected_markers(rig: RigCalibration) -> int:
+        """All of them."""
+        return len(rig.markers.positions_plc_m)
+
+    @staticmethod
     def preload() -> None:
         """What processes that fork from this one would each do anew; see executive.core.ports.Localizer."""
         warm_up()

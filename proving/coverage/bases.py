@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 from executive.core import registry
 from executive.core.errors import ConfigError
-from executive.inject.entries import RESERVED
-from executive.inject.kind import FAULT_KIND
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import History, events
-from executive.run.scenario import ResolvedScenario
+from executive.run.fault import FAULT_KIND, load_fault
+from executive.run.resolved import ResolvedScenario
 from proving.coverage.items import Item
 from proving.coverage.recipes import Fault, at_node, for_item
 from proving.coverage.universe import Universe
+from proving.inject.entries import RESERVED
 from proving.scenario_data import Data, resolved
 
 DURATIONS: dict[str, tuple[str | None, ...]] = {"helped": ("5 min",), "failed": (None,)}
@@ -80,4 +80,4 @@ def _installed(fault: Fault) -> bool:
 
 
 def _lasting(kind: str) -> bool:
-    return registry.get(FAULT_KIND, kind).lasting
+    return load_fault(kind).lasting

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from executive.core import registry
-from executive.inject.kind import FAULT_KIND
 from executive.run.app import RunOptions, run
+from executive.run.fault import FAULT_KIND
 from proving.coverage.bases import candidates
 from proving.coverage.coverage import cover
 from proving.coverage.fill import file_name, needed

@@ -17,8 +17,8 @@ from executive.core.types import (
     Segment,
     Source,
 )
-from executive.inject.kind import FAULT_KIND
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc.attitude import quat_from_heading_tilt
+from executive.run.fault import FAULT_KIND
 from executive.testing.fake import FakeBackend, FakeWorld
 from perception.localizer.localizer import LedStereoLocalizer
 from sim_pybullet import BACKEND

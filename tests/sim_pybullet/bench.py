@@ -16,7 +16,7 @@ from executive.core.types import (
     Shot,
     Window,
 )
-from executive.inject.kind import FAULT_KIND
+from executive.run.fault import FAULT_KIND
 from perception.frames.difference import led_sequence
 from perception.markers.look import look_at
 from sim_pybullet import BACKEND

@@ -13,7 +13,7 @@ from executive.config.backends import BACKEND_KIND, BackendRequest, BackendSpec
 from executive.core import registry
 from executive.core.rig import RigCalibration
 from executive.core.types import Point, Segment
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.testing import check_backend, check_strategy
 from executive.tree.load import load_tree
 from executive.tree.nodes.base import Direction

@@ -13,7 +13,7 @@ import pytest
 from executive.cli import invoke
 from executive.core import registry
 from executive.core.errors import NodeRaised
-from executive.pool.pool import Pool
+from executive.pool import Pool
 from executive.record import History, events
 from executive.record.reader import is_complete
 from executive.run.runner import Run

@@ -21,6 +21,7 @@ from executive.core.registry.sources import (
     Module,
     broken_kinds,
     entries,
+    in_order,
     kind_named,
     kind_names,
     kinds,
@@ -46,6 +47,7 @@ __all__ = [
     "kinds",
     "modules",
     "names",
+    "ordered",
     "own_name",
     "project_file",
     "source_of",
@@ -70,15 +72,22 @@ def every(kind: Kind[T]) -> dict[str, T]:
     return {name: cast("T", thing) for name, (thing, broken) in loaded.items() if broken is None}
 
 
+def ordered(kind: Kind[T]) -> tuple[T, ...]:
+    """All of a kind that can be used, in the order in which it is registered."""
+    loaded = [entry.loaded(kind) for entry in in_order(kind.plural).values()]
+    return tuple(cast("T", thing) for thing, broken in loaded if broken is None)
+
+
 def broken(kind: Kind[Any]) -> tuple[Broken, ...]:
     """All of a kind that cannot be used, and the modules that may have held more of it."""
     loaded = [entry.loaded(kind) for entry in entries(kind.plural).values()]
-    return (*(found for _, found in loaded if found is not None), *broken_modules())
+    return (*(found for _, found in loaded if found is not None), *broken_modules(kind))
 
 
-def broken_modules() -> tuple[Broken, ...]:
-    """The plug-in modules that cannot be imported: nobody knows what they would have added."""
-    return tuple(module.broken for module in modules() if module.broken is not None)
+def broken_modules(kind: Kind[Any] | None = None) -> tuple[Broken, ...]:
+    """The plug-in modules that cannot be imported, which might have added this kind, or any."""
+    found = modules(kind.plural if kind is not None else None)
+    return tuple(module.broken for module in found if module.broken is not None)
 
 
 def source_of(kind: Kind[Any], name: str) -> str:

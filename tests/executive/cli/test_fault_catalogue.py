@@ -7,7 +7,7 @@ import pytest
 from executive.cli import invoke
 from executive.config.describe import parameters
 from executive.core import registry
-from executive.inject.kind import FAULT_KIND
+from executive.run.fault import FAULT_KIND
 from executive.run.schema import schema
 
 

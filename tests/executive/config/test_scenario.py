@@ -12,8 +12,9 @@ from executive.config.validate import listed
 from executive.core import registry
 from executive.core.errors import ConfigError
 from executive.core.rig import RigCalibration
-from executive.inject.kind import FAULT_KIND
-from executive.run.scenario import resolve_scenario
+from executive.run.fault import FAULT_KIND
+from executive.run.resolve import resolve_scenario
+from proving.inject import INSTRUMENT as FAULTS
 
 
 def problems_of(path, **options):
@@ -36,8 +37,8 @@ def test_a_scenario_is_resolved_with_every_default(folder):
     assert scenario.world.light.sun_elevation == math.radians(35)
     assert scenario.world.mast_height == 1.5
     assert [s.tolerance_m for s in scenario.mission.route()] == [0.03, 0.02]
-    assert scenario.faults[0].duration_s == 1200.0
-    assert scenario.faults[0].start.progress == 0.4
+    assert scenario.of(FAULTS)[0].duration_s == 1200.0
+    assert scenario.of(FAULTS)[0].start.progress == 0.4
     assert scenario.rig == RigCalibration()
     assert scenario.tree.name == "go"
 
@@ -105,7 +106,7 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
         'did you mean "reached"?',
         "scenarios/dark.yaml:11:35: got an angle, expected something true or false",
         'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, mission, seed, tier, '  # noqa: E501  (as it is printed)
-        'backend, localizer, world, rig, faults, expect, expected_to_fail or ...; did you mean "time_limit"?',
+        'backend, localizer, world, rig, time_limit, faults, expect or ...; did you mean "time_limit"?',
     ]
 
 

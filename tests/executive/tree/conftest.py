@@ -24,8 +24,8 @@ from executive.core.values import (
     SEGMENT,
     TEXT,
 )
-from executive.isc.classification import Assessment
-from executive.pool.pool import Situation
+from executive.isc import Assessment, Readings
+from executive.pool import Situation
 from executive.tree.build import build
 from executive.tree.load import load_tree_text
 from executive.tree.nodes.base import (
@@ -135,8 +135,12 @@ def services(pool: Any = None) -> Any:
             tracks=SimpleNamespace(stop=lambda: None),
             cabin=SimpleNamespace(read=lambda: CabinReading(0.0, 0.0, 0.0, False)),
         ),
-        classification=SimpleNamespace(predicted=lambda: pose, assess=lambda pose, segment: assessment),
-        journal=SimpleNamespace(assessment=lambda assessment: None),
+        classification=SimpleNamespace(
+            predicted=lambda: pose,
+            extrapolate=lambda pose, segment: assessment,
+            tracker=SimpleNamespace(readings=Readings()),
+        ),
+        journal=SimpleNamespace(),
     )
 
 

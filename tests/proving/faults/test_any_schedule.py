@@ -9,8 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from executive.core import registry
-from executive.inject.faults import FaultSpec
-from executive.inject.kind import FAULT_KIND
+from executive.run.fault import FAULT_KIND, FaultSpec
 from tests.proving.faults.scenario import run
 
 OUTCOMES = {"reached", "safe_hold", "help", "time_limit", "invalid", "error"}

@@ -9,9 +9,9 @@ from executive.core.types import (
     Reason,
     Source,
 )
-from executive.inject.onsets import Onset, Sightings
-from executive.inject.triggers import Trigger
 from executive.record import events
+from proving.inject.onsets import Onset, Sightings
+from proving.inject.triggers import Trigger
 
 
 def telemetry(tilt_rad):

@@ -15,6 +15,10 @@ ADDED = {
     "backends": ("twin", "TWIN"),
     "faults": ("hum", "HUM"),
     "strategies": ("sit_still", "STRATEGY"),
+    "channels": ("bumps", "BUMPS"),
+    "hypotheses": ("rough_ground", "ROUGH"),
+    "policies": ("last_first", "LAST_FIRST"),
+    "instruments": ("watcher", "WATCHER"),
     "files": ("recipe", "RECIPE"),
     "reporters": ("recipe", "REPORTER"),
     "commands": ("greet", "greet"),
@@ -32,6 +36,8 @@ backend: twin
 localizer: overhead
 tier: geometric
 time_limit: 1 h
+watch: 3
+policy: last_first
 mission:
   mission: outside
   tree: weigh

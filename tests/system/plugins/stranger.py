@@ -10,13 +10,19 @@ from longarm import (
     LENGTH,
     POSE,
     BackendSpec,
+    Channel,
+    Decision,
     Fault,
     FaultSpec,
     FileKind,
+    Gaussian,
+    Hypothesis,
     In,
+    InstrumentSpec,
     Leaf,
     Out,
     Outcome,
+    Policy,
     Reason,
     Reporter,
     Strategy,
@@ -70,11 +76,33 @@ class _Hum(Fault):
 
 HUM = FaultSpec("hum", "Something hums.", Nothing, _Hum, "")
 
+
+def _bumps(seen):
+    return None
+
+
+BUMPS = Channel("bumps", "Bumps felt since the last fix.", "", Gaussian(0.0, 1.0), _bumps)
+ROUGH = Hypothesis("rough_ground", "The ground is rough.", {"bumps": Gaussian(5.0, 2.0)})
+LAST_FIRST = Policy("last_first", "The least fitted.", lambda options, situation, memory: Decision(None))
+
+
+class _Watcher(InstrumentSpec):
+    name, doc, keys = "watcher", "Counts what happens.", ("watch",)
+
+    def read(self, source, setting):
+        return source.data.get("watch", 0)
+
+    def dump(self, settings):
+        return {"watch": settings}
+
+
+WATCHER = _Watcher()
+
 STRATEGY = Strategy(
     name="sit_still",
     doc="Sit still for a while.",
     tree=Path(__file__).with_name("sit_still.yaml"),
-    answers={},
+    answers={"rough_ground": 0.5},
     reasons={Reason.NOT_SEEN: 0.5},
     cost_s=20.0,
 )
@@ -116,12 +144,16 @@ def overhead_too(devices, rig, clock):
 
 
 __all__ = [
+    "BUMPS",
     "HUM",
+    "LAST_FIRST",
     "MASS",
     "RECIPE",
     "REPORTER",
+    "ROUGH",
     "STRATEGY",
     "TWIN",
+    "WATCHER",
     "WeighSample",
     "greet",
 ]

@@ -18,21 +18,33 @@ BROKEN = {
     "faults": (
         "hum",
         'FaultSpec("hum", "Hums.", object, dict, "hummed")',
-        "fault hum: it should lead to the unknown hypothesis 'hummed'",
+        'fault hum: unknown hypothesis "hummed", expected nominal',
     ),
     "strategies": (
         "sit_still",
         'Strategy("sit_still", "Sits.", Path("/nowhere.yaml"), {}, {Reason.NOT_SEEN: 0.5}, 20.0)',
         "strategy sit_still: tree file not found: /nowhere.yaml (is it in package-data?)",
     ),
-    "files": ("recipe", "3", "file kind recipe: got a int, expected a FileKind"),
+    "channels": (
+        "bumps",
+        'Channel("bumps", "", "", Gaussian(0, 1), print)',
+        "channel bumps: it does not say what",
+    ),
+    "hypotheses": (
+        "rough_ground",
+        'Hypothesis("rough_ground", "Rough.", {"bumps": Gaussian(5.0, 2.0)})',
+        "hypothesis rough_ground: it speaks about 'bumps', expected a channel: ",
+    ),
+    "policies": ("last_first", "3", "policy last_first: got an int, expected a Policy"),
+    "instruments": ("watcher", "3", "instrument watcher: got an int, expected an InstrumentSpec"),
+    "files": ("recipe", "3", "file kind recipe: got an int, expected a FileKind"),
     "reporters": (
         "recipe",
         "print",
         "reporter recipe: got a builtin_function_or_method, expected a Reporter",
     ),
     "commands": ("greet", "print", "command greet: got a builtin_function_or_method, expected a Command"),
-    "localizers": ("overhead_too", "3", "localizer overhead_too: got a int, expected a Callable"),
+    "localizers": ("overhead_too", "3", "localizer overhead_too: got an int, expected a Callable"),
 }
 """Kind → name, what stands there instead, and what is said of it. A new kind joins by one line."""
 HEAD = "from pathlib import Path\nfrom longarm import *\n"
@@ -101,8 +113,10 @@ USES = {
     "value_types": ("weigh.yaml", "3:44"),
     "leaves": ("weigh.yaml", "6:7"),
     "backends": ("outside.yaml", "3:10"),
-    "faults": ("outside.yaml", "12:5"),
-    "strategies": ("outside.yaml", "14:33"),
+    "faults": ("outside.yaml", "14:5"),
+    "strategies": ("outside.yaml", "16:33"),
+    "policies": ("outside.yaml", "8:9"),
+    "instruments": ("outside.yaml", "1:1"),
     "localizers": ("outside.yaml", "4:12"),
 }
 """Kind → a file that uses it, and where."""
@@ -175,7 +189,7 @@ def test_the_pool_does_without_a_strategy_whose_tree_is_bad(plain, capsys):
     (folder / "sit_still.yaml").write_text("tree: sit_still\nroot: {wait: {duration: 5 m}}\n")
     assert invoke(["run", "plain.yaml", "--out", "out"]) == 0
     told = capsys.readouterr().err
-    assert told.startswith("longarm: the pool does without strategy sit_still: sit_still.yaml:2:25: got ")
+    assert told.startswith("longarm: the run does without strategy sit_still: sit_still.yaml:2:25: got ")
     assert "(longarm.yaml: stranger.py)\n" in told
     assert invoke(["explain", "out"]) == 0
 

@@ -10,7 +10,7 @@ from executive.cli import invoke
 from executive.config.project import project_above
 from executive.core import registry
 from executive.core.errors import ConfigError
-from executive.run.scenario import resolve_scenario
+from executive.run.resolve import resolve_scenario
 
 REST = "tree: {name}\nports: {{route: {{type: Route}}}}\nroot: {root}\n"
 MISSION = "mission: short\ntree: rest\nwaypoints: [{x: 2.2 m, y: -0.5 m}, {x: 2.4 m, y: -0.5 m}]\n"

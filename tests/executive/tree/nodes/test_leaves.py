@@ -23,9 +23,9 @@ from executive.core.types import (
     TetherReading,
     TiltReading,
 )
-from executive.isc.classification import Classification
-from executive.isc.prediction import quat_from_heading_tilt
-from executive.pool.pool import Pool
+from executive.isc import Classification, known_channels, known_hypotheses
+from executive.isc.attitude import quat_from_heading_tilt
+from executive.pool import Pool
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.testing import FakeBackend, FakeWorld, OverheadLocalizer
@@ -79,7 +79,15 @@ class Bench:
             np.diag([1e-6] * 6),
             Source.PRIOR,
         )
-        return Classification(prior, self.backend.rig, self.backend.clock)
+        return Classification(
+            prior,
+            self.backend.rig,
+            self.backend.clock,
+            known_hypotheses(),
+            known_channels(),
+            self.journal.assessment,
+            markers_expected=4,
+        )
 
     def run(self, kind: str, values: Mapping[str, object]) -> Outcome[object]:
         """Tick the leaf to its end; its outcome. The same one if it ran before."""
@@ -106,7 +114,7 @@ class Bench:
         ended: list[Outcome[object]] = []
         self.trace.note = lambda path, outcome: ended.append(outcome)
         for _ in range(PATIENCE_TICKS):
-            self.classification.sense(self.backend.devices)
+            self.classification.tracker.sense(self.backend.devices)
             leaf.tick_once()
             if ended:
                 break
@@ -157,7 +165,7 @@ def drifting(bench: Bench) -> None:
 
 def anomalous(bench: Bench) -> None:
     for _ in range(4):
-        bench.classification.failed(Outcome(Reason.BLOCKED))
+        bench.classification.on_failure(Outcome(Reason.BLOCKED))
 
 
 def turned(bench: Bench) -> None:
