@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from textwrap import indent
 from typing import Any
 
 from py_trees.common import Status
@@ -127,7 +128,7 @@ class Bench:
 def _spec(tree: str | Path, known: Mapping[str, type[Leaf]]) -> TreeSpec:
     if isinstance(tree, Path):
         return load_tree(tree, known)
-    text = tree if tree.lstrip().startswith("tree:") else f"tree: bench\nroot: {tree}\n"
+    text = tree if tree.lstrip().startswith("tree:") else f"tree: bench\nroot:\n{indent(tree, '  ')}\n"
     return load_tree_text(text, "bench.yaml", known)
 
 
