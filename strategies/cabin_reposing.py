@@ -9,7 +9,7 @@ from executive.pool.pool import Situation, Strategy
 
 
 def _not_yet_tilted(situation: Situation) -> str | None:
-    raised = situation.cabin.arm_rad > math.radians(15.0)
+    raised = situation.cabin is not None and situation.cabin.arm_rad > math.radians(15.0)
     return "the cabin is already raised towards the head" if raised else None
 
 

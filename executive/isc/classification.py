@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from executive.core.clock import Clock
+from executive.core.devices import DRIVE, INCLINOMETER, TETHER
 from executive.core.ports import Devices
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import (
     Outcome,
     PoseEstimate,
@@ -64,12 +65,12 @@ class Assessment:
 
 @dataclass(frozen=True)
 class Telemetry:
-    """One tick's readings of everything that is read continuously."""
+    """One tick's readings of everything that is read continuously; None for what this robot does not have."""
 
     time_s: float
     tracks: TrackReading
-    tilt: TiltReading
-    tether: TetherReading
+    tilt: TiltReading | None = None
+    tether: TetherReading | None = None
 
 
 @dataclass
@@ -84,9 +85,7 @@ class _SinceFix:
 class Classification:
     """Keeps the motion model and the hypotheses; told of every reading, fix and failure."""
 
-    def __init__(
-        self, prior: PoseEstimate, rig: RigCalibration, clock: Clock, noise: MotionNoise | None = None
-    ) -> None:
+    def __init__(self, prior: PoseEstimate, rig: Rig, clock: Clock, noise: MotionNoise | None = None) -> None:
         self.noise = noise or MotionNoise()
         self.motion: MotionState = prediction.start(prior, self.noise)
         self.weights: dict[Hypothesis, float] = dict(PRIOR)
@@ -102,12 +101,17 @@ class Classification:
 
     def sense(self, devices: Devices) -> Telemetry:
         """Read the continuous channels once and carry the prediction on with them."""
+        tilt, tether = devices.get(INCLINOMETER), devices.get(TETHER)
         now = Telemetry(
-            self._clock.now_s, devices.tracks.read(), devices.inclinometer.read(), devices.tether.read()
+            self._clock.now_s,
+            devices[DRIVE].read(),
+            None if tilt is None else tilt.read(),
+            None if tether is None else tether.read(),
         )
         before = self.telemetry.tracks if self.telemetry else now.tracks
         self._carry_on(now.tracks.left_m - before.left_m, now.tracks.right_m - before.right_m)
-        self.motion = prediction.level(self.motion, now.tilt)
+        if now.tilt is not None:
+            self.motion = prediction.level(self.motion, now.tilt)
         if now.tracks.moving and before.moving:
             self._since.currents.append(max(now.tracks.left_current_a, now.tracks.right_current_a))
         self.telemetry = now
@@ -226,8 +230,9 @@ class Classification:
         return Evidence(self._clock.now_s, channels | self._pull())
 
     def _pull(self) -> dict[Channel, tuple[float, float]]:
-        """What the tether says, once it has been read."""
-        return {Channel.TETHER: (self.telemetry.tether.tension_n, 0.0)} if self.telemetry else {}
+        """What the tether says, once it has been read; nothing where there is none."""
+        tether = self.telemetry.tether if self.telemetry else None
+        return {Channel.TETHER: (tether.tension_n, 0.0)} if tether else {}
 
     def _mean_current(self) -> float:
         return sum(self._since.currents) / len(self._since.currents)

@@ -26,6 +26,7 @@ LEAST_WEIGHT = 0.02  # a hypothesis below this is no reason to act
 LEAST_FITNESS = 0.1  # below this a remedy is a shot in the dark; ground decides better
 SAME_PLACE_M = 0.15
 PROGRESS_M = 0.05
+NONE_UNFIT: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Situation:
     assessment: Assessment
     pose: PoseEstimate
     segment: Segment | None
-    cabin: CabinReading
+    cabin: CabinReading | None = None
 
 
 def no_needs(situation: Situation) -> str | None:
@@ -104,8 +105,15 @@ class Choice:
 class Pool:
     """Strategies and the memory of what was tried where."""
 
-    def __init__(self, strategies: Iterable[Strategy], note: Callable[[Choice | Attempt], None]) -> None:
+    def __init__(
+        self,
+        strategies: Iterable[Strategy],
+        note: Callable[[Choice | Attempt], None],
+        unfit: Mapping[str, str] = NONE_UNFIT,
+    ) -> None:
+        """`unfit` says of strategies that this robot cannot carry out why not, by name."""
         self.strategies: dict[str, Strategy] = {s.name: s for s in strategies}
+        self.unfit = unfit
         self.attempts: list[Attempt] = []
         self._note = note
 
@@ -174,6 +182,8 @@ class Pool:
         )
 
     def _rate(self, strategy: Strategy, situation: Situation, at_hand: Container[str] | None) -> Candidate:
+        if strategy.name in self.unfit:
+            return Candidate(strategy.name, 0.0, self.unfit[strategy.name])
         if at_hand is not None and strategy.name not in at_hand:
             return Candidate(strategy.name, 0.0, "needs values that the tree here does not have")
         weights = situation.assessment.weights

@@ -13,6 +13,7 @@ from typing import Any
 from executive.core.types import PoseEstimate
 from executive.core.values import (
     ANGLE,
+    CURRENT,
     FLAG,
     FORCE,
     INTEGER,
@@ -27,8 +28,6 @@ from executive.record.events import (
     TruthEvent,
     WaypointEvent,
 )
-
-CURRENT = ValueType("current", float, "A")
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from executive.config.backends import BackendRequest
 from executive.core.clock import Stopwatch
+from executive.core.devices import DRIVE
 from executive.core.errors import PluginError
 from executive.core.ports import Backend, Devices, Localizer
 from executive.core.types import (
@@ -20,7 +20,7 @@ from executive.core.types import (
 )
 from executive.isc.classification import Classification
 from executive.isc.prediction import quat_from_heading_tilt
-from executive.navigation.belt_rest import RestingTracks
+from executive.navigation.belt_rest import RestingDrive
 from executive.pool.pool import Pool, Strategy
 from executive.record import events
 from executive.record.command_log import logged
@@ -32,6 +32,7 @@ from executive.run.instruments import Together, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run
 from executive.tree.build import build
+from executive.tree.needs import unfit
 from executive.tree.nodes.services import Services
 from executive.tree.strategies import strategy_trees
 
@@ -90,19 +91,23 @@ def _prepare(
     journal.hear = instruments.hear
     strategies = instruments.wrap_pool(strategies)
     devices = logged(instruments.wrap_devices(backend.devices), journal.write)
-    belts = RestingTracks(devices.tracks)
-    devices = replace(devices, tracks=belts)
+    belts = RestingDrive(devices[DRIVE])
+    devices = devices.replace(DRIVE, belts)
+    trees = strategy_trees(strategies, scenario.instead)
+    not_for_this_robot = unfit(trees, scenario.backend)
     services = Services(
         clock=backend.clock,
         devices=devices,
         rig=backend.rig,
         localizer=instruments.wrap_localizer(_localizer(make_localizer, devices, backend)),
         classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
-        pool=Pool(strategies, journal.strategy),
+        pool=Pool(strategies, journal.strategy, not_for_this_robot),
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
-    built = build(scenario.tree, services, inputs, strategy_trees(strategies, scenario.instead))
+    built = build(
+        scenario.tree, services, inputs, {n: t for n, t in trees.items() if n not in not_for_this_robot}
+    )
     instruments.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
 
     def each_tick() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from executive.core.devices import CABIN, DRIVE
 from executive.core.types import Outcome, Segment
 from executive.pool.pool import Situation
 from executive.tree.nodes.services import Services
@@ -17,7 +18,8 @@ def choose(
     services: Services, segment: Segment | None, failure: Outcome[object], at_hand: frozenset[str]
 ) -> str | None:
     """The strategy that the pool chooses among those at hand, None to call home. The rover rests."""
-    services.devices.tracks.stop()
+    services.devices[DRIVE].stop()
+    cabin = services.devices.get(CABIN)
     pose = services.classification.predicted()
     situation = Situation(
         time_s=services.clock.now_s,
@@ -25,7 +27,7 @@ def choose(
         assessment=services.classification.assess(pose, segment),
         pose=pose,
         segment=segment,
-        cabin=services.devices.cabin.read(),
+        cabin=None if cabin is None else cabin.read(),
     )
     services.journal.assessment(situation.assessment)
     return services.pool.choose(situation, at_hand).strategy

@@ -133,3 +133,11 @@ def test_what_fails_again_only_further_on_was_helped() -> None:
     chosen.conclude(helped=False, along_m=0.6)
     assert chosen.attempts[-1].helped
     assert chosen.choose(situation(Hypothesis.SLIP_TURNING, x_m=0.6)).strategy == "turn"
+
+
+def test_what_this_robot_cannot_carry_out_is_refused_with_its_reason() -> None:
+    notes: list[Choice | Attempt] = []
+    chosen = Pool([TURN], notes.append, {"turn": "needs cabin, which this robot does not have"})
+    choice = chosen.choose(situation(Hypothesis.SLIP_TURNING))
+    assert choice.strategy is None
+    assert choice.candidates[0].refused == "needs cabin, which this robot does not have"
