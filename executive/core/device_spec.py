@@ -104,12 +104,27 @@ def _broken(spec: DeviceSpec[Any]) -> Iterator[str]:
     yield from (f"its port has no {verb.name}" for verb in spec.verbs if not hasattr(spec.port, verb.name))
 
 
+def _page(spec: DeviceSpec[Any]) -> Mapping[str, Any]:
+    """What the catalogue says of a device: what it reports and can be told, and what it serves as."""
+    return {
+        "doc": spec.doc,
+        "port": f"{spec.port.__module__}.{spec.port.__qualname__}",
+        "reports": [
+            {"signal": spec.signal(q), "type": q.type.name, "unit": q.type.unit, "doc": q.doc}
+            for q in spec.quantities
+        ],
+        "commands": [verb.name for verb in spec.verbs],
+        "serves": None if spec.serves is None else spec.serves.name,
+    }
+
+
 DEVICE_KIND: Kind[DeviceSpec[Any]] = Kind(
     "device",
     "devices",
     "What a robot has: what it reports, what it can be told.",
     DeviceSpec,
     check=_broken,
+    page=_page,
 )
 
 

@@ -2,7 +2,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from executive.core.device_spec import DeviceSpec, Quantity
+from executive.core.device_spec import DEVICE_KIND, DeviceSpec, Quantity, Verb
 from executive.core.devices import CAMERAS, DRIVE, HEAD, TETHER, TRACKS
 from executive.core.ports import Devices, MissingDevice
 from executive.core.types import TetherReading, TrackReading
@@ -57,3 +57,20 @@ def test_signals_are_named_after_their_device_by_default():
     tether = SimpleNamespace(read=lambda: TetherReading(0.0, 5.0, 0.3))
     assert TETHER.sample(tether) == {"length": 5.0, "tension": 0.3}
     assert [TRACKS.signal(q) for q in TRACKS.quantities][:2] == ["left", "right"]
+
+
+def test_what_a_device_cannot_keep_is_named():
+    twice = DeviceSpec("twin", " ", object, BATTERY.quantities * 2, (Verb("charge"),))
+    assert DEVICE_KIND.faults_of("twin", twice) == (
+        "it does not say what it is",
+        "it reports charge twice",
+        "its port has no charge",
+    )
+    assert DEVICE_KIND.faults_of("battery", BATTERY) == ()
+
+
+def test_the_catalogue_says_what_a_device_reports():
+    page = DEVICE_KIND.page(BATTERY)
+    assert page["reports"] == [{"signal": "battery_charge", "type": "number", "unit": None, "doc": "left"}]
+    assert DEVICE_KIND.page(TRACKS)["serves"] == "drive"
+    assert DEVICE_KIND.page(TRACKS)["commands"] == ["drive", "stop"]
