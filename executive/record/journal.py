@@ -20,6 +20,7 @@ from executive.pool import Attempt, Choice
 from executive.record import events
 from executive.record.pictures import annotated, picture
 from executive.record.recorder import Recorder
+from executive.record.telemetry import samples
 
 CAMERAS = ("left", "right")
 KEEP_EVERY = 5
@@ -105,24 +106,8 @@ class RunJournal:
         """One sample of all that is read continuously, and of where the rover should be by it."""
         if now.tracks.moving:
             self.write(predicted.on(self._segment))
-        cabin, head = devices.cabin.read(), devices.head.read()
-        self.write(
-            events.Telemetry(
-                left_m=now.tracks.left_m,
-                right_m=now.tracks.right_m,
-                left_current_a=now.tracks.left_current_a,
-                right_current_a=now.tracks.right_current_a,
-                roll_rad=now.tilt.roll_rad,
-                pitch_rad=now.tilt.pitch_rad,
-                arm_rad=cabin.arm_rad,
-                cabin_rad=cabin.cabin_rad,
-                pan_rad=head.pan_rad,
-                tilt_rad=head.tilt_rad,
-                tether_m=now.tether.length_m,
-                tether_n=now.tether.tension_n,
-                moving=now.tracks.moving,
-            )
-        )
+        for event in samples(now, devices):
+            self.write(event)
 
     def along_route_m(self) -> float:
         """How much of the route lies behind the rover, by the last fix [m]."""

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from executive.config.backends import BackendRequest
 from executive.core.clock import Stopwatch
+from executive.core.devices import DRIVE
 from executive.core.errors import PluginError
 from executive.core.ports import Backend, Devices, Localizer
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import (
     Outcome,
     PoseEstimate,
@@ -22,7 +23,7 @@ from executive.core.types import (
 )
 from executive.isc import Classification, known_channels, known_hypotheses
 from executive.isc.attitude import quat_from_heading_tilt
-from executive.navigation.belt_rest import RestingTracks
+from executive.navigation.belt_rest import RestingDrive
 from executive.pool import Pool, Strategy, known_policy
 from executive.record import events
 from executive.record.command_log import logged
@@ -34,6 +35,7 @@ from executive.run.instruments import Together, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run
 from executive.tree.build import build
+from executive.tree.needs import unfit
 from executive.tree.nodes.services import Services
 from executive.tree.strategies import strategy_trees
 
@@ -92,8 +94,10 @@ def _prepare(
     journal.hear = instruments.hear
     strategies = instruments.wrap_pool(strategies)
     devices = logged(instruments.wrap_devices(backend.devices), journal.write)
-    belts = RestingTracks(devices.tracks)
-    devices = replace(devices, tracks=belts)
+    belts = RestingDrive(devices[DRIVE])
+    devices = devices.replace(DRIVE, belts)
+    trees = strategy_trees(strategies, scenario.instead)
+    not_for_this_robot = unfit(trees, scenario.backend)
     services = Services(
         clock=backend.clock,
         devices=devices,
@@ -108,11 +112,13 @@ def _prepare(
             announce=journal.assessment,
             markers_expected=_markers_expected(make_localizer, backend.rig),
         ),
-        pool=Pool(strategies, journal.strategy, known_policy(scenario.policy)),
+        pool=Pool(strategies, journal.strategy, known_policy(scenario.policy), not_for_this_robot),
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
-    built = build(scenario.tree, services, inputs, strategy_trees(strategies, scenario.instead))
+    built = build(
+        scenario.tree, services, inputs, {n: t for n, t in trees.items() if n not in not_for_this_robot}
+    )
     instruments.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
 
     def each_tick() -> None:
@@ -150,7 +156,7 @@ def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:
     return made
 
 
-def _markers_expected(localizer: object, rig: RigCalibration) -> int:
+def _markers_expected(localizer: object, rig: Rig) -> int:
     """How many markers of this rig a localizer looks for; 0 where it does not say that it uses any."""
-    expected: Callable[[RigCalibration], int] = getattr(localizer, "expected_markers", lambda rig: 0)
+    expected: Callable[[Any], int] = getattr(localizer, "expected_markers", lambda rig: 0)
     return expected(rig)

@@ -17,7 +17,7 @@ from executive.config.source import Source
 from executive.core.errors import Problem
 from executive.core.ports import Backend, Devices, Localizer
 from executive.core.registry import Kind
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import Outcome
 from executive.pool import Strategy
 from executive.record.history import History
@@ -98,7 +98,7 @@ class Records:
 
     history: History
     truth: History
-    rig: RigCalibration
+    rig: Rig
     result: Mapping[str, Any]
     """As far as the record tells it: before anything was judged."""
 

@@ -10,6 +10,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from executive.core.clock import Stopwatch
+from executive.core.devices import DRIVE
 from executive.core.errors import NodeRaised
 from executive.core.ports import Backend
 from executive.core.types import Outcome, Reason
@@ -151,7 +152,7 @@ def _see_it_rest(run: Run) -> None:
     """
     by_s = run.services.clock.now_s + SETTLING_S
     run.backend.advance()
-    while run.services.devices.tracks.read().moving and run.services.clock.now_s < by_s:
+    while run.services.devices[DRIVE].read().moving and run.services.clock.now_s < by_s:
         run.backend.advance()
     run.backend.advance()
     now = run.services.classification.tracker.sense(run.services.devices)

@@ -3,7 +3,7 @@
 from executive.testing.check_backend import check_backend
 from executive.testing.check_diagnosis import check_channel, check_hypothesis
 from executive.testing.check_strategy import check_strategy
-from executive.testing.fake import BACKEND, FakeBackend, FakeWorld, OverheadLocalizer
+from executive.testing.fake import BACKEND, FakeBackend, FakeWorld, OverheadLocalizer, fake_with
 
 __all__ = [
     "BACKEND",
@@ -14,4 +14,5 @@ __all__ = [
     "check_channel",
     "check_hypothesis",
     "check_strategy",
+    "fake_with",
 ]

@@ -13,6 +13,7 @@ from typing import Any
 from executive.config.backends import BackendRequest
 from executive.config.source import read_text
 from executive.core.clock import Stopwatch
+from executive.core.devices import DRIVE
 from executive.core.ports import LocaliseRequest
 from executive.core.types import Outcome, Quality, Reason
 from executive.isc import Classification, known_channels, known_hypotheses
@@ -257,7 +258,7 @@ def run(
     stop = backend.safe_stop
 
     def noted_stop() -> None:
-        moving_at_stop.append(backend.devices.tracks.read().moving)
+        moving_at_stop.append(backend.devices[DRIVE].read().moving)
         stop()
 
     backend.safe_stop = noted_stop
