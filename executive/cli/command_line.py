@@ -104,10 +104,11 @@ def run(
     """
     from executive.cli import summary
     from executive.run import app
+    from executive.run.instruments import broken_instruments
     from executive.tree.strategies import broken_strategies
 
-    for broken in () if quiet else broken_strategies():
-        click.echo(f"longarm: the pool does without {broken}", err=True)
+    for broken in () if quiet else (*broken_strategies(), *broken_instruments()):
+        click.echo(f"longarm: the run does without {broken}", err=True)
     finished = app.run(file, app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json)))
     if as_json:
         click.echo(json.dumps(finished.result, indent=2))

@@ -10,6 +10,7 @@ from typing import Any
 
 from executive.config.backends import BackendRequest
 from executive.config.localizer_kind import LOCALIZER_KIND
+from executive.config.reporter import REPORTER_KIND
 from executive.core import registry
 from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError, RecordError
@@ -27,7 +28,6 @@ from executive.record.run_folder import (
     write_traceback,
 )
 from executive.report import write_report
-from executive.report.reporter import REPORTER_KIND
 from executive.report.show import draw
 from executive.run.assembly import TICK_S, set_up, write_start
 from executive.run.judging import exit_code, judged

@@ -165,5 +165,9 @@ class InstrumentSpec(Generic[S]):
 
 
 INSTRUMENT_KIND: Kind[InstrumentSpec[Any]] = Kind(
-    "instrument", "instruments", "What takes part in a run beside the executive.", InstrumentSpec
+    "instrument",
+    "instruments",
+    "What takes part in a run beside the executive.",
+    InstrumentSpec,
+    page=lambda spec: {"doc": spec.doc, "keys": list(spec.keys), "after": list(spec.after)},
 )

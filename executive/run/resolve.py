@@ -25,7 +25,7 @@ from executive.core.errors import ConfigError, Problem
 from executive.core.registry import Project, in_project
 from executive.pool.known import DEFAULT_POLICY, POLICY_KIND
 from executive.run.instrument import InstrumentSpec, Setting
-from executive.run.instruments import instruments_there_are
+from executive.run.instruments import broken_instruments, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
@@ -74,6 +74,8 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
         source = problems.attempt(_drawn, source, abs(seed), instruments) or source
     owned = [key for spec in instruments for key in spec.keys]
     file = problems.attempt(parse, source, ScenarioFile, beside=owned)
+    if file is None:  # what looks like an unknown key may be that of an instrument that is broken
+        problems.found += [source.at(()).problem(str(each)) for each in broken_instruments()]
     backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
     backend = problems.attempt(_backend, source, backend_name)
     problems.attempt(_check_localizer, source)

@@ -89,7 +89,9 @@ class ResolvedScenario:
         data["world"] = self.world.model_dump(mode="json", by_alias=True, exclude_none=True)
         data["rig"] = rig_fields(self.rig)
         time_limit = data.pop("time_limit")
-        for spec in instruments_there_are():
+        with in_project(self.project):
+            instruments = instruments_there_are()
+        for spec in instruments:
             data |= spec.dump(self.of(spec))
         data["time_limit"] = time_limit
         return yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=110)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from executive.config.backends import BackendRequest, BackendSpec
 from executive.core.devices import CABIN, CAMERAS, DRIVE, HEAD
+from executive.core.errors import Breach
 from executive.core.ports import Action, Backend
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -22,15 +23,22 @@ Make = Callable[[], Backend]
 PATIENCE_TICKS = 3000
 
 
-class BackendBreach(AssertionError):
-    """The backend broke a promise; the message says which."""
+class BackendBreach(Breach):
+    """The backend breaks promises; the message says which."""
+
+
+class _Broken(Exception):
+    """One promise not kept."""
 
 
 def check_backend(spec: BackendSpec, request: BackendRequest) -> None:
-    """Run every check against fresh backends from this spec; raises BackendBreach at the first breach."""
+    """Run every check against fresh backends from this spec; BackendBreach with every promise not kept."""
+    subject = f"backend {spec.name}"
     if request.tier not in spec.tiers:
-        raise BackendBreach(f"got tier {request.tier}, {spec.name} offers {spec.tiers}")
-    _expect(isinstance(request.rig, spec.rig), f"its rig is a {spec.rig.__name__}")
+        raise BackendBreach(subject, [f"got tier {request.tier}, {spec.name} offers {spec.tiers}"])
+    if not isinstance(request.rig, spec.rig):
+        raise BackendBreach(subject, [f"its rig is a {spec.rig.__name__}"])
+    broken: list[str] = []
 
     def make() -> Backend:
         return spec.create(request)
@@ -50,7 +58,12 @@ def check_backend(spec: BackendSpec, request: BackendRequest) -> None:
         _readings_are_numbers,
         _the_same_seed_repeats,
     ):
-        check(make)
+        try:
+            check(make)
+        except _Broken as breach:
+            broken.append(str(breach))
+    if broken:
+        raise BackendBreach(subject, broken)
 
 
 def _with(make: Make, body: Callable[[Backend], None]) -> None:
@@ -65,7 +78,7 @@ def _with(make: Make, body: Callable[[Backend], None]) -> None:
 
 def _expect(held: bool, promise: str) -> None:
     if not held:
-        raise BackendBreach(promise)
+        raise _Broken(promise)
 
 
 def _until_done(backend: Backend, action: Action[object]) -> Outcome[object]:
@@ -75,7 +88,7 @@ def _until_done(backend: Backend, action: Action[object]) -> Outcome[object]:
             _expect(action.poll() == outcome, "an outcome, once given, stays the same")
             return outcome
         backend.advance()
-    raise BackendBreach(f"an action did not end within {PATIENCE_TICKS} ticks")
+    raise _Broken(f"an action did not end within {PATIENCE_TICKS} ticks")
 
 
 def _time_passes_by_whole_ticks(make: Make) -> None:
