@@ -43,7 +43,10 @@ def check_backend(spec: BackendSpec, request: BackendRequest) -> None:
     def make() -> Backend:
         return spec.create(request)
 
-    _the_devices_are_those_declared(make, spec)
+    try:
+        _the_devices_are_those_declared(make, spec)
+    except _Broken as breach:  # all else would only say so once more
+        raise BackendBreach(subject, [str(breach)]) from None
     for check in (
         _time_passes_by_whole_ticks,
         _a_drive_reaches_its_travel,
