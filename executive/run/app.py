@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from executive.config.backends import BackendRequest
 from executive.config.localizer_kind import LOCALIZER_KIND
@@ -16,9 +14,9 @@ from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
 from executive.core.registry import in_project
 from executive.pool import Strategy
-from executive.record import History, events
+from executive.record import History, RunResult, events, read_result, write_result
 from executive.record.recorder import Recorder
-from executive.record.result import RunFigures, write_result
+from executive.record.result import RunFigures
 from executive.record.run_folder import (
     RUN_FILES,
     free_folder,
@@ -56,7 +54,7 @@ class Finished:
     """A run that ended: its folder, its result, and the exit code that stands for it."""
 
     folder: Path
-    result: dict[str, Any]
+    result: RunResult
     exit_code: int
     defect: BaseException | None = None
 
@@ -158,8 +156,7 @@ def _conclude(
     write_result(folder / "result.json", result)
     if with_report:
         write_report(folder, _tree_svg(folder))
-    kept = json.loads((folder / "result.json").read_text())
-    return Finished(folder, kept, exit_code(result["outcome"], met), end.defect)
+    return Finished(folder, read_result(folder / "result.json"), exit_code(result.outcome, met), end.defect)
 
 
 def _tree_svg(folder: Path) -> str | None:

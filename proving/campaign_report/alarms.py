@@ -29,7 +29,7 @@ class Alarms:
 def alarms(campaign: Campaign) -> Alarms:
     """Add up the alarms that `result.json` tells of as ones that no fault can have caused."""
     cases = campaign.counted
-    found = {case.index: [str(row["hypothesis"]) for row in _rows(case)] for case in cases}
+    found = {case.index: [alarm.hypothesis for alarm in case.result.false_alarms] for case in cases}
     return Alarms(
         cases=len(cases),
         without_fault=sum(not case.faults for case in cases),
@@ -40,14 +40,9 @@ def alarms(campaign: Campaign) -> Alarms:
     )
 
 
-def _rows(case: Case) -> list[dict[str, object]]:
-    return list(case.result.get("false_alarms") or [])
-
-
 def _tried(case: Case) -> list[str]:
     """The strategies chosen before any fault took effect."""
-    rows = case.result.get("strategies") or []
-    return [str(row["name"]) for row in rows if row["t_s"] < case.quiet_s]
+    return [row.name for row in case.result.strategies if row.t_s < case.quiet_s]
 
 
 def alarm_table(found: Alarms) -> Table:

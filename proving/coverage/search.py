@@ -85,7 +85,7 @@ class Search:
             self.bases.append(Base.of(data, history, self.universe))
         if of_suite or not (useful or wrong):
             return None
-        return Proposal(data, fills, frozenset(alone.count), str(result["outcome"]), wrong)
+        return Proposal(data, fills, frozenset(alone.count), result.outcome, wrong)
 
     def coverage(self) -> Coverage:
         """Of the suite and of what was found so far."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from executive.record.events import NodeChange
 from executive.record.history import History
-from executive.record.rows import Row, row
+from executive.record.rows import JudgedRow, row
 from executive.tree.addresses import means
 from proving.judge.expect import Times
 
@@ -50,7 +50,7 @@ def _ends(history: History) -> Iterator[End]:
         running.discard(change.path)
 
 
-def in_order(steps: Sequence[Mapping[str, str]], seen: Sequence[End], end_s: float) -> Iterator[Row]:
+def in_order(steps: Sequence[Mapping[str, str]], seen: Sequence[End], end_s: float) -> Iterator[JudgedRow]:
     """A row a step: met if it came after the step before it, or in its tick. None is, after one missed."""
     left, since_s, missed = list(seen), 0.0, False
     for number, step in enumerate(steps, start=1):
@@ -65,14 +65,14 @@ def in_order(steps: Sequence[Mapping[str, str]], seen: Sequence[End], end_s: flo
         yield row(text, True)
 
 
-def never(steps: Sequence[Mapping[str, str]], seen: Sequence[End]) -> Iterator[Row]:
+def never(steps: Sequence[Mapping[str, str]], seen: Sequence[End]) -> Iterator[JudgedRow]:
     """A row a step: met if it never came."""
     for step in steps:
         first_s = next((end.time_s for end in seen if end.is_of(step)), None)
         yield row(f"never {told(step)}", first_s is None, t_violation_s=first_s)
 
 
-def times(wanted: Sequence[Times], seen: Sequence[End], end_s: float) -> Iterator[Row]:
+def times(wanted: Sequence[Times], seen: Sequence[End], end_s: float) -> Iterator[JudgedRow]:
     """A row each: met if it came as often as is allowed."""
     for each in wanted:
         came_s = [end.time_s for end in seen if end.is_of(each.of)]

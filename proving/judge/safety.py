@@ -6,7 +6,7 @@ import math
 
 from executive.core.rig import RigCalibration
 from executive.record.history import History
-from executive.record.rows import Row
+from executive.record.rows import JudgedRow
 from proving.judge.true_measures import (
     DRIVEN_BEYOND,
     TETHER,
@@ -19,7 +19,7 @@ BEYOND_M = 0.001
 """Less than this driven beyond the margin is rounding."""
 
 
-def safety_rows(history: History, world: History, rig: RigCalibration) -> list[Row]:
+def safety_rows(history: History, world: History, rig: RigCalibration) -> list[JudgedRow]:
     """Never beyond the off-track margin, within the rig's limits of tilt and tether, at rest at the end.
 
     `met` is None where there is no truth to know it by.

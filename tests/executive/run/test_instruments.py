@@ -118,7 +118,7 @@ def test_a_key_that_nobody_owns_is_a_problem(short):
 def test_an_instrument_ticks_and_has_the_last_word(patience, short, tmp_path, patient, outcome):
     patience()
     done = run(short(f"patience: {patient}\n"), RunOptions(out=tmp_path / "run", bar=False, report=False))
-    assert done.result["outcome"] == outcome
+    assert done.result.outcome == outcome
     assert done.exit_code == 1
 
 
@@ -148,8 +148,8 @@ sys.modules["proving"] = None  # importing it fails
 
 from executive.run.app import RunOptions, run
 done = run(Path(sys.argv[1]), RunOptions(out=Path(sys.argv[2]), bar=False))
-assert done.result["outcome"] == "reached", done.result
-assert (done.result["expectations"], done.result["safety"]) == ([], [])
+assert done.result.outcome == "reached", done.result
+assert (done.result.expectations, done.result.safety) == ((), ())
 sys.exit(done.exit_code)
 """
 
