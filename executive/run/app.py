@@ -128,16 +128,15 @@ def _execute(
     )
     with Recorder(folder / "record.mcap") as recorder:
         write_start(recorder, scenario)
-        try:
-            prepared = set_up(scenario, strategies, localizer, request, recorder, watch)
-        except LongarmError:
-            raise
-        except Exception as defect:  # a plug-in that cannot even be made
-            end = ended_by(defect)
-            recorder.write(events.Stop(end.outcome, end.reason), 0.0)
-            return end
-        with progress_bar(scenario.name, sum(s.length_m for s in route), bar) as progress:
-            prepared.progress = progress
+        with progress_bar(scenario.name, route, bar) as listeners:
+            try:
+                prepared = set_up(scenario, strategies, localizer, request, recorder, watch, listeners)
+            except LongarmError:
+                raise
+            except Exception as defect:  # a plug-in that cannot even be made
+                end = ended_by(defect)
+                recorder.write(events.Stop(end.outcome, end.reason), 0.0)
+                return end
             end = execute(prepared)
     for part, spent in prepared.backend.wall_s().items():
         watch.spent_s[part] += spent
