@@ -31,7 +31,7 @@ class Comparison:
 
 @click.command()
 @click.argument("run_dir", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="Keep the new run here.")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder to keep the new run in.")
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON and nothing else.")
 def replay(run_dir: Path, out: Path | None, as_json: bool) -> int:
     """Run the scenario of a run folder again; say whether it came out bit for bit the same.

@@ -16,7 +16,7 @@ from executive.record import RunResult
 
 @dataclass(frozen=True)
 class CaseNote:
-    """What the campaign says of a case: what it drew, its verdict, and whose doing the end was (`class_`)."""
+    """What the campaign says of a case: what it drew, its verdict, and what caused the ending (`class_`)."""
 
     index: int
     setting: str = ""

@@ -8,7 +8,7 @@ from collections import Counter
 import numpy as np
 
 from executive.record.run_result import FaultStages
-from executive.report.figure import duration
+from executive.report.figure import counted, duration
 from executive.report.tiles import Tile
 from proving.campaign_report.alarms import Alarms
 from proving.campaign_report.case import INFRASTRUCTURE
@@ -26,7 +26,12 @@ def headline(campaign: Campaign) -> list[Tile]:
     worst = ", ".join(f"case {case.index}" for case in unsafe[:4]) + (" …" if len(unsafe) > 4 else "")
     safety = "safety violation" if len(unsafe) == 1 else "safety violations"
     return [
-        Tile(safety, str(len(unsafe)), worst or f"in {known} cases judged", "bad" if unsafe else "good"),
+        Tile(
+            safety,
+            str(len(unsafe)),
+            worst or f"in {counted(known, 'case')} judged",
+            "bad" if unsafe else "good",
+        ),
         _success(campaign),
         Tile("cases", str(len(campaign.cases)), _classes(campaign)),
     ]

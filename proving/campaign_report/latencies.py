@@ -11,7 +11,7 @@ import numpy as np
 from executive.record.run_result import FaultStages
 from executive.report import svg
 from executive.report.axes import Scale, legend
-from executive.report.figure import Figure, duration
+from executive.report.figure import Figure, counted, duration
 from proving.campaign_report.gather import Campaign
 
 _WIDTH, _LEFT, _TOP, _ROW, _PANEL, _GAP = 1100.0, 150.0, 34.0, 26.0, 255.0, 62.0
@@ -102,6 +102,6 @@ def _box(known: np.ndarray[tuple[int], np.dtype[np.float64]], scale: Scale, y: f
 
 def _words(kind: str, title: str, known: np.ndarray[tuple[int], np.dtype[np.float64]], never: int) -> str:
     if not len(known):
-        return f"{kind}: never {title}, in {never} cases"
+        return f"{kind}: never {title}, in {counted(never, 'case')}"
     middle = duration(float(np.median(known)))
     return f"{kind}: {title} after {middle} in the median of {len(known)}, never in {never}"

@@ -78,10 +78,11 @@ def times(wanted: Sequence[Times], seen: Sequence[End], end_s: float) -> Iterato
         came_s = [end.time_s for end in seen if end.is_of(each.of)]
         least, most = each.at_least, each.at_most
         bounds = [f"at least {least}"] * (least > 0) + [f"at most {most}"] * (most is not None)
+        noun = "time" if (most if most is not None else least) == 1 else "times"
         spare = min(len(came_s) - least, len(came_s) if most is None else most - len(came_s))
         too_many = most is not None and len(came_s) > most
         at_s = came_s[most] if too_many and most is not None else end_s
-        yield row(f"{told(each.of)} {' and '.join(bounds)} times", spare >= 0, spare, "", at_s)
+        yield row(f"{told(each.of)} {' and '.join(bounds)} {noun}", spare >= 0, spare, "", at_s)
 
 
 def told(step: Mapping[str, str]) -> str:
