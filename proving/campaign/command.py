@@ -160,7 +160,7 @@ def _engine(name: str, address: str | None, slots: int | None) -> Engine:
 
 def _default_folder(loaded: Campaign, resume: bool) -> Path:
     """`runs/NAME-SEED`, the next free one, or to resume the last that is there."""
-    from executive.record.run_folder import free_folder
+    from executive.record import free_folder
 
     name = f"{loaded.file.campaign}-{loaded.file.seed}"
     free = free_folder(Path("runs"), name)

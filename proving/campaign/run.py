@@ -9,9 +9,9 @@ from typing import Any
 
 from executive.config.source import Source
 from executive.core.clock import Stopwatch
-from executive.record.versions import versions
+from executive.record import versions
+from executive.run import ResolvedScenario
 from executive.run.resolve import resolve
-from executive.run.resolved import ResolvedScenario
 from proving.campaign.cases import Campaign, Drawn, Prepared, case_number, prepared, put, seed_of
 from proving.campaign.folder import CampaignFolder
 from proving.campaign.result import CaseNote, CaseResult, write_case

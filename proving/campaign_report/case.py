@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from executive.core.units import UnitError, parse
-from executive.record import RunResult
-from executive.record.run_result import FaultStages
+from executive.record import FaultStages, RunResult
 from proving.campaign.result import CaseNote, CaseResult
 from proving.inject.entries import RESERVED
 

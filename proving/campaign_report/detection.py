@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from executive.record.run_result import FaultStages
+from executive.record import FaultStages
 from executive.report import svg
 from executive.report.axes import legend
 from executive.report.figure import Figure

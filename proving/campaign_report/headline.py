@@ -7,7 +7,7 @@ from collections import Counter
 
 import numpy as np
 
-from executive.record.run_result import FaultStages
+from executive.record import FaultStages
 from executive.report.figure import counted, duration
 from executive.report.tiles import Tile
 from proving.campaign_report.alarms import Alarms

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from executive.record.run_result import FaultStages
+from executive.record import FaultStages
 from executive.report import svg
 from executive.report.axes import Scale, legend
 from executive.report.figure import Figure, counted, duration

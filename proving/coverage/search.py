@@ -9,7 +9,7 @@ from shutil import rmtree
 
 from executive.pool import Strategy
 from executive.record import History
-from executive.run.resolved import ResolvedScenario
+from executive.run import ResolvedScenario
 from proving.coverage.bases import Base, candidates, resolved_or_none
 from proving.coverage.coverage import Coverage, put_together
 from proving.coverage.excuses import Excuses

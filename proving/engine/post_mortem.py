@@ -10,12 +10,19 @@ from pathlib import Path
 import yaml
 
 from executive.core.errors import LongarmError, RecordError
-from executive.record import History, RunResult, events, read_result, write_result
-from executive.record.recorder import Recorder
-from executive.record.result import RunFigures, summarise
+from executive.record import (
+    History,
+    Recorder,
+    RunFigures,
+    RunResult,
+    events,
+    read_result,
+    summarise,
+    write_result,
+)
+from executive.run import ResolvedScenario
 from executive.run.judging import judged
 from executive.run.resolve import resolve_scenario
-from executive.run.resolved import ResolvedScenario
 from proving.engine import child
 from proving.engine.case import LOG, Case, CaseClass, Ending
 from proving.engine.server import Death

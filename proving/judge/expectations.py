@@ -7,10 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from executive.config.validate import listed
-from executive.record.evidence import DETECTION_GRACE_S, first_leading
-from executive.record.history import History
-from executive.record.rows import JudgedRow, row
-from executive.record.run_result import FaultStages, RunResult
+from executive.record import DETECTION_GRACE_S, FaultStages, History, JudgedRow, RunResult, first_leading, row
 from proving.judge.expect import Diagnosed, DurationBand, Expect, LengthBand, Noticed
 from proving.judge.expected import formulas
 from proving.judge.node_ends import (

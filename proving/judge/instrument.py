@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from executive.config.source import Source
 from executive.config.validate import parse
 from executive.core.errors import Problem
-from executive.record.rows import JudgedRow
-from executive.run.instrument import InstrumentSpec, Judgement, Records, Schema, Setting
-from executive.run.targets import strange_nodes
+from executive.record import JudgedRow
+from executive.run import InstrumentSpec, Judgement, Records, Schema, Setting, strange_nodes
 from executive.tree.spec import TreeSpec
 from proving.inject import INSTRUMENT as FAULTS
 from proving.judge.expect import LISTS, Expect, JudgeKeys, with_lists

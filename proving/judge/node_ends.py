@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from executive.record import History, JudgedRow, row
 from executive.record.events import NodeChange
-from executive.record.history import History
-from executive.record.rows import JudgedRow, row
 from executive.tree.addresses import means
 from proving.judge.expect import Times
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from executive.core.rig import RigCalibration
-from executive.record.history import History
-from executive.record.rows import JudgedRow
+from executive.record import History, JudgedRow
 from proving.judge.true_measures import (
     DRIVEN_BEYOND,
     TETHER,

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from executive.core.types import Array
+from executive.record import History, JudgedRow, row
 from executive.record.events import (
     SegmentEvent,
     Start,
     Stop,
     Telemetry,
 )
-from executive.record.history import History
-from executive.record.rows import JudgedRow, row
 from executive.record.truth import (
     CrossTrack,
     Track,

@@ -7,9 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from executive.record import RunResult
-from executive.record.rows import JudgedRow, first_violated
-from executive.run.resolved import ResolvedScenario
+from executive.record import JudgedRow, RunResult, first_violated
+from executive.run import ResolvedScenario
 from proving.engine import Case, CaseClass, Ending
 from proving.judge.instrument import INSTRUMENT
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from executive.record import RunResult
-from executive.record.rows import first_violated
-from executive.run.resolved import ResolvedScenario
+from executive.record import RunResult, first_violated
+from executive.run import ResolvedScenario
 from proving.engine import CaseClass, Ending
 from proving.judge import INSTRUMENT as JUDGE
 

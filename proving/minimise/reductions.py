@@ -11,8 +11,8 @@ from executive.core.units import (
     quantity,
     split,
 )
-from executive.record.run_result import FaultStages
-from executive.run.fault import FaultSpec, load_fault
+from executive.record import FaultStages
+from executive.run import FaultSpec, load_fault
 from proving.inject.entries import RESERVED
 from proving.minimise.fewer import fewer
 from proving.minimise.trier import Trier

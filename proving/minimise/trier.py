@@ -9,7 +9,7 @@ from shutil import rmtree
 
 from executive.core.errors import ConfigError
 from executive.record import RunResult
-from executive.run.resolved import ResolvedScenario
+from executive.run import ResolvedScenario
 from proving.engine import Case, Limits, settle
 from proving.engine.server import ForkServer
 from proving.engine.supervisor import run_alone

@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 from shutil import rmtree
 
-from executive.record.history import History
+from executive.record import History
 from proving.coverage.seen import Seen
 from proving.coverage.trials import Trial
 from proving.coverage.universe import Universe
