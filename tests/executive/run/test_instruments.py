@@ -142,8 +142,9 @@ from pathlib import Path
 
 found = importlib.metadata.entry_points
 def without(**which):
-    every = found().select(**which)
-    return importlib.metadata.EntryPoints(p for p in every if not p.value.startswith("proving"))
+    every = (point for group in found().groups for point in found(group=group))
+    kept = importlib.metadata.EntryPoints(p for p in every if not p.value.startswith("proving"))
+    return kept.select(**which)
 importlib.metadata.entry_points = without
 sys.modules["proving"] = None  # importing it fails
 
