@@ -70,11 +70,11 @@ class DeviceSpec(Generic[T]):
     doc: str
     port: type[Any]
     quantities: tuple[Quantity, ...] = ()
-    sensed: bool = True
     verbs: tuple[Verb, ...] = ()
     read: Callable[[T], object] = _read
     rest: Callable[[T], None] | None = None
     serves: DeviceSpec[T] | None = None
+    sensed: bool = True
 
     def fit(self, device: T) -> Fitted:
         """This device, by an object that answers for it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,11 +26,13 @@ from executive.isc.attitude import quat_from_heading_tilt
 from executive.navigation.belt_rest import RestingDrive
 from executive.pool import Pool, Strategy, known_policy
 from executive.record import events
+from executive.record.along import AlongRoute
+from executive.record.bus import EventBus, Listener
 from executive.record.command_log import logged
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.record.versions import versions
-from executive.run.instrument import Context, Instrument, TreeParts
+from executive.run.instrument import Context, TreeParts
 from executive.run.instruments import Together, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run
@@ -68,12 +70,13 @@ def set_up(
     request: BackendRequest,
     recorder: Recorder,
     watch: Stopwatch,
+    listeners: Sequence[Listener] = (),
 ) -> Run:
     """The robot and all that drives it; what fails half way leaves the robot at rest and released."""
     with watch.measure("setup"):
         backend = scenario.backend.create(request)
     try:
-        return _prepare(scenario, strategies, localizer, backend, recorder, watch)
+        return _prepare(scenario, strategies, localizer, backend, recorder, watch, listeners)
     except BaseException:
         backend.safe_stop()
         backend.close()
@@ -87,11 +90,15 @@ def _prepare(
     backend: Backend,
     recorder: Recorder,
     watch: Stopwatch,
+    listeners: Sequence[Listener],
 ) -> Run:
     route = scenario.mission.route()
-    journal = RunJournal(recorder, backend.clock, route)
-    instruments = _instruments(scenario, backend, journal)
-    journal.hear = instruments.hear
+    along = AlongRoute(route)
+    bus = EventBus(backend.clock, (recorder.write, along.hear, *listeners))
+    journal = RunJournal(bus, route)
+    context = Context(backend, scenario.seed, bus.publish, along.share)
+    instruments = Together([spec.make(scenario.of(spec), context) for spec in instruments_there_are()])
+    bus.subscribe(lambda event, time_s: instruments.hear(event))
     strategies = instruments.wrap_pool(strategies)
     devices = logged(instruments.wrap_devices(backend.devices), journal.write)
     belts = RestingDrive(devices[DRIVE])
@@ -141,12 +148,6 @@ def _prepare(
         each_tick=each_tick,
         invalid=instruments.conclude,
     )
-
-
-def _instruments(scenario: ResolvedScenario, backend: Backend, journal: RunJournal) -> Instrument:
-    """What takes part in this run, as one."""
-    context = Context(backend, scenario.seed, journal.write, journal.progress)
-    return Together([spec.make(scenario.of(spec), context) for spec in instruments_there_are()])
 
 
 def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:

@@ -21,7 +21,8 @@ from executive.core.rig import Rig
 from executive.core.types import Outcome
 from executive.pool import Strategy
 from executive.record.history import History
-from executive.record.rows import Row
+from executive.record.rows import JudgedRow
+from executive.record.run_result import RunResult
 from executive.tree.spec import TreeSpec
 
 S = TypeVar("S")
@@ -99,7 +100,7 @@ class Records:
     history: History
     truth: History
     rig: Rig
-    result: Mapping[str, Any]
+    result: RunResult
     """As far as the record tells it: before anything was judged."""
 
 
@@ -110,8 +111,8 @@ class Judgement:
     `met` None: it has no opinion, and the outcome decides.
     """
 
-    expectations: tuple[Row, ...] = ()
-    safety: tuple[Row, ...] = ()
+    expectations: tuple[JudgedRow, ...] = ()
+    safety: tuple[JudgedRow, ...] = ()
     met: bool | None = None
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
@@ -51,7 +50,6 @@ class Run:
     recorder: Recorder
     stopwatch: Stopwatch
     time_limit_s: float
-    progress: Callable[[RunJournal, float], None] = lambda journal, now_s: None
     each_tick: Callable[[], None] = lambda: None
     invalid: Callable[[], str | None] = lambda: None
     """Asked at the end: why the run proves nothing, None if it does."""
@@ -98,8 +96,6 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
             return RunEnd("time_limit", f"still under way after {run.time_limit_s:.0f} s")
         with watch.measure("advance"):
             run.backend.advance()
-        with suppress(Exception):  # who only looks on must not break the run
-            run.progress(run.journal, run.services.clock.now_s)
 
 
 def _ended(run: Run) -> RunEnd:

@@ -24,7 +24,7 @@ from executive.core.types import (
     View,
 )
 from executive.core.units import Angle, Length
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted
 from proving.faults.parameters import Nothing, Parameters
 

@@ -11,7 +11,7 @@ from executive.core.devices import LINK
 from executive.core.ports import Action, Devices, Link
 from executive.core.types import Call, Outcome, Reason
 from executive.core.units import Duration, Fraction
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted, Held, Unanswered
 from proving.faults.parameters import Nothing, Parameters
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from executive.core.rig import Rig
-from executive.record.history import History
-from executive.record.rows import Row
+from executive.record import History, JudgedRow
 from proving.judge.true_measures import (
     DRIVEN_BEYOND,
     TETHER,
@@ -19,7 +18,7 @@ BEYOND_M = 0.001
 """Less than this driven beyond the margin is rounding."""
 
 
-def safety_rows(history: History, world: History, rig: Rig) -> list[Row]:
+def safety_rows(history: History, world: History, rig: Rig) -> list[JudgedRow]:
     """Never beyond the off-track margin, within the rig's limits of tilt and tether, at rest at the end.
 
     `met` is None where there is no truth to know it by.

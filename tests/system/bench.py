@@ -23,6 +23,7 @@ from executive.pool import (
     Situation,
     Strategy,
 )
+from executive.record.bus import EventBus
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.run.assembly import prior_pose
@@ -205,7 +206,7 @@ def prepare(setting: Setting, folder: Path, diary: Diary) -> tuple[Run, BuiltTre
         BackendRequest(scenario.world, route, scenario.seed, scenario.tier, scenario.rig, None, 1.0)
     )
     recorder = Recorder(folder / "record.mcap")
-    journal = RunJournal(recorder, backend.clock, route)
+    journal = RunJournal(EventBus(backend.clock, [recorder.write]), route)
     localizer = Blinking(backend.devices, backend.rig, backend.clock)
     localizer.every = setting.blind_every
     pool = InTurn(strategies(), journal.strategy)

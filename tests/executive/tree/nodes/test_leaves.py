@@ -27,6 +27,7 @@ from executive.core.types import (
 from executive.isc import Classification, known_channels, known_hypotheses
 from executive.isc.attitude import quat_from_heading_tilt
 from executive.pool import Pool
+from executive.record.bus import EventBus
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.testing import FakeBackend, FakeWorld, OverheadLocalizer
@@ -65,7 +66,7 @@ class Bench:
         request = BackendRequest(FakeWorld(), (SEGMENT,), 3, "geometric", RigCalibration(), None, 1.0)
         self.backend = FakeBackend(request)
         self.recorder = Recorder(folder / "record.mcap")
-        self.journal = RunJournal(self.recorder, self.backend.clock, (SEGMENT,))
+        self.journal = RunJournal(EventBus(self.backend.clock, [self.recorder.write]), (SEGMENT,))
         self.localizer: Any = OverheadLocalizer(self.backend.devices, self.backend.rig, self.backend.clock)
         self.store, self.trace = Store(), Trace()
         self.classification = self.known(0.0)
