@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from executive.config.backends import BackendRequest
 from executive.config.localizer_kind import LOCALIZER_KIND
@@ -17,9 +15,9 @@ from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
 from executive.core.registry import in_project
 from executive.pool import Strategy
-from executive.record import History, events
+from executive.record import History, RunResult, events, read_result, write_result
 from executive.record.recorder import Recorder
-from executive.record.result import RunFigures, write_result
+from executive.record.result import RunFigures
 from executive.record.run_folder import (
     RUN_FILES,
     free_folder,
@@ -56,7 +54,7 @@ class Finished:
     """A run that ended: its folder, its result, and the exit code that stands for it."""
 
     folder: Path
-    result: dict[str, Any]
+    result: RunResult
     exit_code: int
     defect: BaseException | None = None
 
@@ -130,16 +128,15 @@ def _execute(
     )
     with Recorder(folder / "record.mcap") as recorder:
         write_start(recorder, scenario)
-        try:
-            prepared = set_up(scenario, strategies, localizer, request, recorder, watch)
-        except LongarmError:
-            raise
-        except Exception as defect:  # a plug-in that cannot even be made
-            end = ended_by(defect)
-            recorder.write(events.Stop(end.outcome, end.reason), 0.0)
-            return end
-        with progress_bar(scenario.name, sum(s.length_m for s in route), bar) as progress:
-            prepared.progress = progress
+        with progress_bar(scenario.name, route, bar) as listeners:
+            try:
+                prepared = set_up(scenario, strategies, localizer, request, recorder, watch, listeners)
+            except LongarmError:
+                raise
+            except Exception as defect:  # a plug-in that cannot even be made
+                end = ended_by(defect)
+                recorder.write(events.Stop(end.outcome, end.reason), 0.0)
+                return end
             end = execute(prepared)
     for part, spent in prepared.backend.wall_s().items():
         watch.spent_s[part] += spent
@@ -158,8 +155,7 @@ def _conclude(
     write_result(folder / "result.json", result)
     if with_report:
         write_report(folder, _tree_svg(folder))
-    kept = json.loads((folder / "result.json").read_text())
-    return Finished(folder, kept, exit_code(result["outcome"], met), end.defect)
+    return Finished(folder, read_result(folder / "result.json"), exit_code(result.outcome, met), end.defect)
 
 
 def _tree_svg(folder: Path) -> str | None:

@@ -29,6 +29,7 @@ from executive.run.instruments import broken_instruments, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
+from executive.tree.needs import missing
 from executive.tree.spec import TreeSpec
 
 
@@ -80,13 +81,15 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
     problems.attempt(_check_localizer, source)
     problems.attempt(_check_policy, source)
     world = problems.attempt(_world, source, backend) if backend else None
-    rig = problems.attempt(rig_from, source, ("rig",))
+    rig = problems.attempt(rig_from, source, ("rig",), backend.rig) if backend else None
     settings = _settings(source, instruments, _setting(source, backend_name), problems)
     tree_path = problems.attempt(_tree_path, source)
     tree = problems.attempt(load_tree, tree_path) if tree_path else None
     inputs = problems.attempt(_inputs, source, tree) if tree else None
     for spec in instruments:
         problems.found.extend(spec.check(source.only(spec.keys), settings, tree))
+    if tree is not None and backend is not None:
+        problems.found.extend(missing(tree, backend))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)

@@ -7,7 +7,7 @@ from executive.testing.check_fault import FaultBreach, check_fault
 from executive.testing.check_leaf import LeafBreach, check_leaf
 from executive.testing.check_localizer import LocalizerBreach, check_localizer
 from executive.testing.check_strategy import StrategyBreach, check_strategy
-from executive.testing.fake import BACKEND, FakeBackend, FakeWorld, OverheadLocalizer
+from executive.testing.fake import BACKEND, FakeBackend, FakeWorld, OverheadLocalizer, fake_with
 
 __all__ = [
     "BACKEND",
@@ -28,4 +28,5 @@ __all__ = [
     "check_leaf",
     "check_localizer",
     "check_strategy",
+    "fake_with",
 ]

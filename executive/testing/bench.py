@@ -21,6 +21,7 @@ from executive.core.rig import RigCalibration
 from executive.core.types import Outcome, Point, Reason, Segment
 from executive.isc import Classification, known_channels, known_hypotheses
 from executive.pool import FIRST_FITTED, Pool, Strategy
+from executive.record.bus import EventBus
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.run.assembly import TICK_S, prior_pose
@@ -71,7 +72,7 @@ class Bench:
         self._folder = TemporaryDirectory(prefix="longarm-bench-")
         recorder = Recorder(Path(self._folder.name) / "record.mcap")
         clock = self.backend.clock
-        journal = RunJournal(recorder, clock, route)
+        journal = RunJournal(EventBus(clock, (recorder.write,)), route)
         self.services = Services(
             clock=clock,
             devices=self.backend.devices,

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from executive.core.devices import DRIVE
 from executive.core.errors import Breach
 from executive.run.fault import Cue, Fault, FaultSpec, broken_promises
 from executive.testing.bench import Bench
@@ -41,7 +42,7 @@ def _in_use(spec: FaultSpec, parameters: Mapping[str, Any]) -> Iterator[str]:
     cue = Cue(lambda: 0.0, bench.backend.clock, np.random.default_rng(0))
     if not spec.backends or "fake" in spec.backends:
         devices = fault.wrap(bench.backend.devices, cue)
-        if devices.tracks.read() != bench.backend.devices.tracks.read():
+        if devices[DRIVE].read() != bench.backend.devices[DRIVE].read():
             yield "while it is not active its devices read as the robot's own do"
     if not isinstance(fault.took_effect(), bool):
         yield "took_effect() says true or false"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from executive.core.devices import DRIVE
 from executive.core.errors import Breach
 from executive.core.types import Outcome, Reason
 from executive.testing.bench import PATIENCE_TICKS, UNDER_WAY, Bench, Ended
@@ -36,7 +37,7 @@ def _in_use(leaf: type[Leaf], values: dict[str, Any]) -> Iterator[str]:
         yield f"it raised {type(error).__name__}: {error}"
         return
     yield from _of_end(leaf, ended.outcome)
-    if bench.backend.devices.tracks.read().moving:
+    if bench.backend.devices[DRIVE].read().moving:
         yield "it left the tracks moving"
     if not _same(ended, Bench().run(leaf, **values)):
         yield "it ends otherwise the second time: its values or the clock are not all that it goes by"
@@ -57,7 +58,7 @@ def _when_interrupted(leaf: type[Leaf], values: dict[str, Any]) -> Iterator[str]
     except Exception as error:  # the same
         yield f"it raised when interrupted: {type(error).__name__}: {error}"
     bench.backend.advance()
-    if bench.backend.devices.tracks.read().moving:
+    if bench.backend.devices[DRIVE].read().moving:
         yield "it leaves the tracks moving when interrupted"
 
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS
 from executive.core.ports import Action, Devices, LocaliseRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -53,8 +54,8 @@ class LedStereoLocalizer:
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
         self._clock = clock
         self._chain = Chain.of(rig)
-        self._tally = Tally(CheckedCameras(devices.cameras, rig.sensor), clock)
-        devices = replace(devices, cameras=self._tally)
+        self._tally = Tally(CheckedCameras(devices[CAMERAS], rig.sensor), clock)
+        devices = devices.replace(CAMERAS, self._tally)
         self._aim = Aim(devices, self._chain, clock)
         self._eyes = Eyes(devices, rig, clock)
         self._tendency = Tendency(devices, self._chain, clock, self._aim, self._eyes)

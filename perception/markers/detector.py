@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS, INCLINOMETER
 from executive.core.ports import Devices, LocaliseRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -136,13 +137,13 @@ class Eyes:
         if pairs < 1:
             return None
         shot = self._shot(led_sequence(markers, pairs), windows)
-        taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline_s)
+        taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return Outcome(taken.reason, f"cameras: {taken.detail}")
         data = taken.value
         state = replace(expectation.state, head_rad=(data.head.pan_rad, data.head.tilt_rad))
         found = look_at(self._rig, data, view_of(self._chain, state).range_m)
-        tilt = self._devices.inclinometer.read()
+        tilt = self._devices[INCLINOMETER].read()
         attitude = (tilt.roll_rad, tilt.pitch_rad)
         chain = shaken(self._chain, found.unknown_px)
         answer = noted(
@@ -167,7 +168,7 @@ class Eyes:
             if batch < _LEAST_CODED_PAIRS:
                 break
             shot = self._shot(coded_sequence(len(self._chain.markers_plc_m), batch), windows)
-            taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline_s)
+            taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
             if taken.value is None or not taken.ok:
                 return Outcome(taken.reason, f"cameras: {taken.detail}")
             pile.add(taken.value)
@@ -184,7 +185,7 @@ class Eyes:
         self, pile: Pile, data: Images | Centres, expectation: Expectation, scope: Scope, pairs: int
     ) -> Sight:
         """What the pile shows so far."""
-        tilt = self._devices.inclinometer.read()
+        tilt = self._devices[INCLINOMETER].read()
         state = replace(expectation.state, head_rad=(data.head.pan_rad, data.head.tilt_rad))
         widen = _WHOLE_FRAME_WIDEN if scope.widen is None else scope.widen
         answer = pile.answer(replace(expectation, state=state), (tilt.roll_rad, tilt.pitch_rad), widen)
