@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from executive.config.backends import BackendRequest, BackendSpec
 from executive.config.file_kinds import FileKind
 from executive.config.reporter import Reporter
+from executive.core.device_spec import DeviceSpec, Quantity, Verb
 from executive.core.errors import Breach, ConfigError, LongarmError, PluginError
 from executive.core.ports import Action, Backend, Devices, LocaliseRequest, Localizer
 from executive.core.registry import Kind
@@ -79,6 +80,7 @@ __all__ = [
     "Context",
     "Cue",
     "Decision",
+    "DeviceSpec",
     "Devices",
     "Ended",
     "Fault",
@@ -107,6 +109,7 @@ __all__ = [
     "Policy",
     "PoseEstimate",
     "Quality",
+    "Quantity",
     "Reason",
     "Records",
     "Reporter",
@@ -115,6 +118,7 @@ __all__ = [
     "Strategy",
     "TreeParts",
     "ValueType",
+    "Verb",
     "check_backend",
     "check_channel",
     "check_fault",

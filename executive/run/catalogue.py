@@ -123,8 +123,16 @@ def as_text(name: str, entry: Page) -> str:
         if key in ANYWHERE and not value:
             lines.append(f"  {key}: any")
         elif key not in told and value is not False and value not in (None, [], {}, ""):
-            lines.append(f"  {key}: {', '.join(value) if isinstance(value, list | dict) else value}")
+            lines.append(f"  {key}: {_words(value)}")
     return "\n".join(lines) + "\n"
+
+
+def _words(value: Any) -> str:
+    """A field in a line: the members of a list, the values of a mapping in it."""
+    if not isinstance(value, list | dict):
+        return str(value)
+    told = [" ".join(str(v) for v in m.values() if v) if isinstance(m, dict) else str(m) for m in value]
+    return ", ".join(told)
 
 
 def _port_line(port: Page) -> str:

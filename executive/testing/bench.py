@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from textwrap import indent
 from typing import Any
 
@@ -23,7 +22,6 @@ from executive.isc import Classification, known_channels, known_hypotheses
 from executive.pool import FIRST_FITTED, Pool, Strategy
 from executive.record.bus import EventBus
 from executive.record.journal import RunJournal
-from executive.record.recorder import Recorder
 from executive.run.assembly import TICK_S, prior_pose
 from executive.testing.fake import FakeBackend, FakeWorld, OverheadLocalizer
 from executive.tree.build import BuiltTree, build
@@ -51,8 +49,8 @@ class Ended:
 class Bench:
     """The fake robot at the start of a short route, and what leaves are given to work with.
 
-    `services`, `backend` and `robot` may be looked at and altered between runs. `own` leaves are known to
-    trees beside those registered; the pool has `strategies`.
+    `services`, `backend` and `robot` may be looked at and altered between runs; `events` is the record.
+    `own` leaves are known to trees beside those registered; the pool has `strategies`.
     """
 
     def __init__(
@@ -69,10 +67,9 @@ class Bench:
         self.route, self.own, self.strategies = route, tuple(own), strategies
         self.backend = FakeBackend(request)
         self.robot = self.backend.robot
-        self._folder = TemporaryDirectory(prefix="longarm-bench-")
-        recorder = Recorder(Path(self._folder.name) / "record.mcap")
+        self.events: list[object] = []
         clock = self.backend.clock
-        journal = RunJournal(EventBus(clock, (recorder.write,)), route)
+        journal = RunJournal(EventBus(clock, (lambda event, now_s: self.events.append(event),)), route)
         self.services = Services(
             clock=clock,
             devices=self.backend.devices,

@@ -15,6 +15,7 @@ ADDED = {
     "backends": ("twin", "TWIN"),
     "faults": ("hum", "HUM"),
     "strategies": ("sit_still", "STRATEGY"),
+    "devices": ("thermometer", "THERMOMETER"),
     "channels": ("bumps", "BUMPS"),
     "hypotheses": ("rough_ground", "ROUGH"),
     "policies": ("last_first", "LAST_FIRST"),

@@ -1,17 +1,20 @@
-"""A plug-in of somebody else with one of every kind, written against `longarm` alone; copied by the tests."""
+"""A plug-in of somebody else with one of every kind, written against `longarm`; copied by the tests."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import click
 from pydantic import BaseModel, ConfigDict
 
+from executive.testing import BACKEND
 from longarm import (
     LENGTH,
+    NUMBER,
     POSE,
-    BackendSpec,
     Channel,
     Decision,
+    DeviceSpec,
     Fault,
     FaultSpec,
     FileKind,
@@ -23,6 +26,7 @@ from longarm import (
     Out,
     Outcome,
     Policy,
+    Quantity,
     Reason,
     Reporter,
     Strategy,
@@ -44,19 +48,10 @@ class WeighSample(Leaf):
         return Outcome(Reason.DONE, "weighed")
 
 
-def _fake(request):
-    from executive.testing import FakeBackend
-
-    return FakeBackend(request)
-
-
-def _world():
-    from executive.testing import FakeWorld
-
-    return FakeWorld
-
-
-TWIN = BackendSpec("twin", "The fake robot under another name.", _world(), ("geometric",), _fake)
+TWIN = replace(BACKEND, name="twin", doc="The fake robot under another name.")
+THERMOMETER = DeviceSpec(
+    "thermometer", "How warm it is.", object, quantities=(Quantity("celsius", NUMBER, "inside", float),)
+)
 
 
 class Nothing(BaseModel):
@@ -152,6 +147,7 @@ __all__ = [
     "REPORTER",
     "ROUGH",
     "STRATEGY",
+    "THERMOMETER",
     "TWIN",
     "WATCHER",
     "WeighSample",

@@ -12,7 +12,7 @@ BROKEN = {
     "leaves": ("weigh_sample", 'type("WeighSample", (Leaf,), {})', "leaf weigh_sample: it does not say what"),
     "backends": (
         "twin",
-        'BackendSpec("twin", "A robot.", dict, (), dict)',
+        'BackendSpec("twin", "A robot.", dict, (), ("drive",), dict, dict)',
         "backend twin: it plays no tier",
     ),
     "faults": (
@@ -24,6 +24,11 @@ BROKEN = {
         "sit_still",
         'Strategy("sit_still", "Sits.", Path("/nowhere.yaml"), {}, {Reason.NOT_SEEN: 0.5}, 20.0)',
         "strategy sit_still: tree file not found: /nowhere.yaml (is it in package-data?)",
+    ),
+    "devices": (
+        "thermometer",
+        'DeviceSpec("thermometer", "", object)',
+        "device thermometer: it does not say what it is",
     ),
     "channels": (
         "bumps",
