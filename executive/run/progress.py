@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from executive.core.types import Segment
 from executive.record.along import AlongRoute
 from executive.record.bus import Listener, harmless
-from executive.record.events import Telemetry
+from executive.record.events import DeviceReading, Telemetry
 
 EVERY_S = 20.0
 
@@ -35,7 +35,7 @@ def progress_bar(title: str, route: tuple[Segment, ...], shown: bool) -> Iterato
 
         def watch(event: object, time_s: float) -> None:
             along.hear(event, time_s)
-            if isinstance(event, Telemetry) and time_s % EVERY_S == 0.0:
+            if isinstance(event, Telemetry | DeviceReading) and time_s % EVERY_S == 0.0:
                 bar.update(task, completed=along.behind_m(), text=_text(along, time_s))
 
         yield (harmless(watch),)
