@@ -14,7 +14,7 @@ class _Part(BaseModel):
 
 
 class GroundConfig(_Part):
-    """Packed earth, with soft patches strewn over it. Efficiencies are true turning per that of the treads."""
+    """Packed earth with soft patches. Efficiencies are true turning per that of the treads."""
 
     turning: Annotated[Fraction, Field(gt=0.2, le=1)] = 0.62
     turning_in_patches: Annotated[Fraction, Field(gt=0.2, le=1)] = 0.52
@@ -25,7 +25,7 @@ class GroundConfig(_Part):
 
 
 class BatteryConfig(_Part):
-    """The battery and what it feeds. `capacity` is in watt hours: a small one, so that a mission sees it sink."""
+    """The battery and what it feeds. `capacity` is in watt hours."""
 
     capacity: Annotated[float, Field(gt=0, le=1000, description="[W h]")] = 40.0
     charge: Annotated[Fraction, Field(gt=0, le=1)] = 0.8

@@ -30,8 +30,8 @@ def find_markers(image: Image, window: Window) -> dict[str, Array]:
         return {}
     origin = np.array([window.u, window.v], dtype=np.float64)
     return {
-        FACES[number]: np.asarray(corners[0], dtype=np.float64) + origin
-        for number, corners in zip(np.ravel(numbers).tolist(), found, strict=True)
+        FACES[int(number)]: np.asarray(corners[0], dtype=np.float64) + origin
+        for number, corners in zip(np.ravel(numbers), found, strict=True)
         if number < len(FACES)
     }
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Generic, Literal, TypeVar
 from executive.core.errors import LongarmError
 from executive.core.ports import Backend
 from executive.core.units import Fraction, Power
-from executive.inject.faults import Fault, FaultSpec
+from executive.run.fault import Fault, FaultSpec
 from pydantic import BaseModel, ConfigDict, Field
 
 from yard_robot.backend import YardBackend
@@ -139,10 +139,20 @@ def _world(backend: Backend) -> World:
     return backend.world
 
 
-def _spec(name: str, fault: type[YardFault[Any]], model: type[_Parameters], hypothesis: str, category: str) -> FaultSpec:
+def _spec(
+    name: str, fault: type[YardFault[Any]], model: type[_Parameters], hypothesis: str, category: str
+) -> FaultSpec:
     doc = " ".join((fault.__doc__ or "").split())
     return FaultSpec(
-        name, doc, model, fault, hypothesis, backends=("yard",), tiers=("full",), category=category, graded=True
+        name,
+        doc,
+        model,
+        fault,
+        hypothesis,
+        backends=("yard",),
+        tiers=("full",),
+        category=category,
+        graded=True,
     )
 
 

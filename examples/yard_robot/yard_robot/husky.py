@@ -1,7 +1,7 @@
 """The husky in PyBullet: a body on four wheels that is moved as the ground lets its wheels move it.
 
-Bullet's friction of four skidding cylinders jumps from edge to edge: turned on the spot, the same wheels turned
-the robot by a fifth or by two thirds of what they should. So the motion in the plane is given, step by step, from
+Bullet's friction of four skidding cylinders jumps from edge to edge: on the spot, the same wheels turned the
+robot by a fifth or by two thirds of what they should. So the motion in the plane is given, step by step, from
 a model of the ground (`ground.py`); Bullet keeps the robot upon it, and turns the wheels.
 """
 

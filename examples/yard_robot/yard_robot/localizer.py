@@ -86,7 +86,8 @@ class _Looking:
         if taken is None:
             return self._outcome
         if taken.value is None:
-            self._outcome = Outcome(taken.reason if not taken.ok else Reason.DEVICE, taken.detail or "no picture")
+            reason = Reason.DEVICE if taken.ok else taken.reason
+            self._outcome = Outcome(reason, taken.detail or "no picture")
             return self._outcome
         outcome = self._localizer.judge(taken.value)
         if outcome.reason is Reason.NOT_SEEN and self._windows:
@@ -128,4 +129,5 @@ def _accepted(fix: PoseEstimate) -> Outcome[PoseEstimate]:
 def _view(picture: Picture, seen: dict[str, Array], shown: Array | None) -> View:
     nothing = np.empty((0, 2))
     detected = np.concatenate([*seen.values()]) if seen else nothing
-    return View(picture.window, picture.counts.astype(np.float32), detected, nothing if shown is None else shown)
+    reprojected = nothing if shown is None else shown
+    return View(picture.window, picture.counts.astype(np.float32), detected, reprojected)

@@ -101,7 +101,7 @@ def _refined(
 
 
 def _jacobian(camera: PoleCamera, arms_m: Array, position: Array) -> Array:
-    """Of pixels (2 n) by place and rotation vector, both in `site`; `arms_m` (n, 3) lead from the body's origin."""
+    """Of pixels (2 n) by place and rotation vector in `site`; `arms_m` (n, 3) are points from `body`."""
     _, to_camera, place = optics(camera)
     rays = (position + arms_m - place) @ to_camera.T
     x, y, z = rays.T

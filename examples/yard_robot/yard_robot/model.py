@@ -58,8 +58,8 @@ def _chassis(husky: Husky) -> Vec3:
 
 
 def _axles(husky: Husky) -> list[Vec3]:
-    half_track = husky.wheel_track_m / 2
-    return [(x, y, husky.wheel_radius_m) for x in (-husky.axle_m, husky.axle_m) for y in (-half_track, half_track)]
+    x, y, z = husky.axle_m, husky.wheel_track_m / 2, husky.wheel_radius_m
+    return [(-x, -y, z), (-x, y, z), (x, -y, z), (x, y, z)]
 
 
 def _solid(client: int, at_body_m: Vec3, colour: Colour, half_m: Vec3) -> int:
@@ -91,8 +91,9 @@ def _marker(client: int, box: MarkerBox, number: int, face: str) -> int:
     black = np.argwhere(bits(number, box.cells))
     cell_m = box.marker_m / box.cells
     squares = (black[:, ::-1] - box.cells / 2) * cell_m
+    whole = np.full((1, 2), -box.edge_m / 2, dtype=np.float64)
     body = pybullet.createMultiBody(
-        baseVisualShapeIndex=_quads(client, box, face, np.array([[-box.edge_m / 2] * 2]), box.edge_m, 1, _WHITE),
+        baseVisualShapeIndex=_quads(client, box, face, whole, box.edge_m, 1, _WHITE),
         linkMasses=[0],
         linkCollisionShapeIndices=[-1],
         linkVisualShapeIndices=[_quads(client, box, face, squares, cell_m, 2, _BLACK)],

@@ -22,7 +22,7 @@ _GROUND_COUNTS = 125.0
 
 
 def optics(camera: PoleCamera) -> tuple[Array, Array, Array]:
-    """Camera matrix (3, 3); rotation (3, 3) from `site` to the camera (x right, y down, z ahead); its place."""
+    """Matrix (3, 3); rotation (3, 3) from `site` to the camera (x right, y down, z ahead); its place."""
     matrix = np.array(
         [
             [camera.focal_px, 0.0, (camera.width_px - 1) / 2],

@@ -35,8 +35,8 @@ class Husky:
 class MarkerBox:
     """A box with an ArUco marker on each of five faces: `top`, `front`, `back`, `left`, `right`.
 
-    `edge_m` is the box's edge, `marker_m` that of a marker's black square, `cells` its cells a side (four bits
-    and the border of one cell on each side).
+    `edge_m` is the box's edge, `marker_m` that of a marker's black square, `cells` its cells a side: four
+    bits, and a border of one cell on each side.
     """
 
     centre_body_m: Vec3 = (0.0, 0.0, 0.60)

@@ -26,7 +26,7 @@ class TruthFile:
         self.sample()
 
     def sample(self) -> None:
-        """Write the present state: every tick in motion, and the last at rest before it; else now and then."""
+        """Write the present state: every tick in motion and the last before it, else now and then."""
         if self._recorder is None:
             return
         now_s, event = self._world.clock.now_s, self._event()

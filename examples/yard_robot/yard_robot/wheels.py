@@ -51,7 +51,7 @@ class Wheels:
             action.end(Outcome(Reason.CANCELLED))
 
     def speeds(self, step_s: float) -> Pair:
-        """The treads' speeds for the next step of this length, so that they are where they should be after it."""
+        """The treads' speeds for the next step, so that they are where they should be after it."""
         if self._action is None:
             return 0.0, 0.0
         self._elapsed_s += step_s
@@ -70,9 +70,7 @@ class Wheels:
             return
         share = min(self._elapsed_s / self._lasts_s, 1.0) if self._lasts_s else 1.0
         counted = self._travels()
-        behind_m = max(
-            abs(self._from_m[side] + share * self._way_m[side] - counted[side]) for side in (0, 1)
-        )
+        behind_m = max(abs(self._from_m[side] + share * self._way_m[side] - counted[side]) for side in (0, 1))
         if share < 1.0 and behind_m <= _BLOCKED_M:
             return
         action, self._action = self._action, None

@@ -33,7 +33,7 @@ _VOLTS = 24.0
 
 
 class World:
-    """Everything simulated. The fields that faults change are public: slip, light, what is covered, the leak."""
+    """Everything simulated. What faults change is public: slip, iris, faces covered, the leak."""
 
     def __init__(
         self, config: YardConfig, route: tuple[Segment, ...], seed: int, rig: YardRig, clock: Clock
@@ -149,13 +149,10 @@ def _connect(gravity_m_s2: float) -> int:
     return client
 
 
-def _start(
-    config: YardConfig, route: tuple[Segment, ...], rng: np.random.Generator
-) -> tuple[Pair, float]:
+def _start(config: YardConfig, route: tuple[Segment, ...], rng: np.random.Generator) -> tuple[Pair, float]:
     """Where the robot stands: near the first way-point, facing away from the pole."""
     first = route[0].start
     dx, dy, turn = rng.normal(0.0, 1.0, 3).tolist()
     place = config.start.place
     heading = math.atan2(first.y_m, first.x_m) + config.start.heading * turn
     return (first.x_m + place * dx, first.y_m + place * dy), heading
-

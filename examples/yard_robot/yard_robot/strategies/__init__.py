@@ -14,7 +14,11 @@ ADOPT_SLIP = Strategy(
     name="adopt_slip",
     doc="The wheels spin: take the advance last seen as this ground's own, and drive shorter stages.",
     tree=_HERE / "adopt_slip.yaml",
-    answers={Hypothesis.SLIP_LONGITUDINAL: 1.0, Hypothesis.SLIP_TURNING: 0.9, Hypothesis.STUCK_ON_OBSTACLE: 0.3},
+    answers={
+        Hypothesis.SLIP_LONGITUDINAL: 1.0,
+        Hypothesis.SLIP_TURNING: 0.9,
+        Hypothesis.STUCK_ON_OBSTACLE: 0.3,
+    },
     reasons={Reason.UNEXPECTED: 0.2},
     cost_s=20.0,
     tries_per_segment=4,
