@@ -35,12 +35,27 @@ SHOW_ANOTHER_FACE = Strategy(
     tries_per_segment=4,
 )
 
-WAIT_FOR_LIGHT = Strategy(
-    name="wait_for_light",
-    doc="The picture is dark: wait a little at rest, and look again.",
-    tree=_HERE / "wait_for_light.yaml",
-    answers={Hypothesis.ILLUMINATION_CHANGE: 1.0, Hypothesis.LOST_ROVER: 0.2},
-    reasons={Reason.UNSTABLE_IMAGES: 0.5, Reason.NOT_SEEN: 0.1},
-    cost_s=60.0,
+WAIT_AND_LOOK = Strategy(
+    name="wait_and_look",
+    doc="Nothing is seen, by the dark or by something in between: wait at rest, and look again and again.",
+    tree=_HERE / "wait_and_look.yaml",
+    answers={
+        Hypothesis.ILLUMINATION_CHANGE: 1.0,
+        Hypothesis.LOST_ROVER: 0.5,
+        Hypothesis.MARKER_LOST: 0.3,
+    },
+    reasons={Reason.UNSTABLE_IMAGES: 0.5, Reason.NOT_SEEN: 0.2},
+    cost_s=100.0,
     tries_per_segment=6,
+)
+
+BACK_UP = Strategy(
+    name="back_up",
+    doc="The robot ran past the way-point: back up to before it, and drive there in short stages.",
+    tree=_HERE / "back_up.yaml",
+    answers={Hypothesis.OVERSHOOT: 1.0},
+    reasons={Reason.OVERSHOOT: 0.6},
+    cost_s=30.0,
+    excursion_m=0.1,
+    tries_per_segment=4,
 )
