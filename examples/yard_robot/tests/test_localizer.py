@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from executive.core.ports import LocaliseRequest
 from executive.core.types import PoseEstimate, Quality, Reason, Source
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc.attitude import quat_from_heading_tilt
 
 from yard_robot.localizer import MarkerLocalizer
 from yard_robot.marker_box import FACES

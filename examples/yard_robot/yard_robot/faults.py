@@ -156,7 +156,7 @@ def _spec(
     )
 
 
-WHEEL_SLIP = _spec("wheel_slip", WheelSlip, Slip, "slip_longitudinal", "terrain")
-BATTERY_DRAIN = _spec("battery_drain", BatteryDrain, Drain, "", "other")
-MARKER_COVERED = _spec("marker_covered", MarkerCovered, Cover, "lost_rover", "markers")
+SLIPPING = _spec("wheel_slip", WheelSlip, Slip, "wheel_slip", "terrain")
+BATTERY_DRAIN = _spec("battery_drain", BatteryDrain, Drain, "battery_low", "other")
+COVERED = _spec("marker_covered", MarkerCovered, Cover, "marker_covered", "markers")
 CAMERA_DARK = _spec("camera_dark", CameraDark, Shade, "illumination_change", "light")

@@ -13,7 +13,7 @@ from yard_robot.actions import DeviceAction, PerTick
 
 Pair = tuple[float, float]
 
-IDLE_A, ROLLING_A, SCRUBBING_A = 0.2, 2.0, 3.0
+IDLE_A, ROLLING_A, SCRUBBING_A = 0.2, 2.0, 0.5
 """Currents of one side: at rest, more when it rolls, and more when it skids sideways in a turn."""
 _NOISE_A = 0.05
 _BLOCKED_M = 0.25  # a wheel that has fallen so far behind its command is held by something

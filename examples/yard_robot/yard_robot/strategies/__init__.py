@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from executive.core.types import Reason
-from executive.isc.hypotheses import Hypothesis
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 
 _HERE = Path(__file__).parent
 
@@ -15,9 +14,10 @@ ADOPT_SLIP = Strategy(
     doc="The wheels spin: take the advance last seen as this ground's own, and drive shorter stages.",
     tree=_HERE / "adopt_slip.yaml",
     answers={
-        Hypothesis.SLIP_LONGITUDINAL: 1.0,
-        Hypothesis.SLIP_TURNING: 0.9,
-        Hypothesis.STUCK_ON_OBSTACLE: 0.3,
+        "wheel_slip": 1.0,
+        "slip_longitudinal": 0.9,
+        "slip_turning": 0.9,
+        "stuck_on_obstacle": 0.3,
     },
     reasons={Reason.UNEXPECTED: 0.2},
     cost_s=20.0,
@@ -28,7 +28,7 @@ SHOW_ANOTHER_FACE = Strategy(
     name="show_another_face",
     doc="The markers that the camera sees are hidden: turn on the spot until another face shows.",
     tree=_HERE / "show_another_face.yaml",
-    answers={Hypothesis.LOST_ROVER: 1.0, Hypothesis.MARKER_LOST: 0.7, Hypothesis.POOR_VIEW: 0.8},
+    answers={"marker_covered": 1.0, "poor_view": 0.8, "lost_rover": 0.5, "marker_lost": 0.5},
     reasons={Reason.NOT_SEEN: 0.4, Reason.POOR_VIEW: 0.4},
     cost_s=40.0,
     excursion_m=0.05,
@@ -40,9 +40,9 @@ WAIT_AND_LOOK = Strategy(
     doc="Nothing is seen, by the dark or by something in between: wait at rest, and look again and again.",
     tree=_HERE / "wait_and_look.yaml",
     answers={
-        Hypothesis.ILLUMINATION_CHANGE: 1.0,
-        Hypothesis.LOST_ROVER: 0.5,
-        Hypothesis.MARKER_LOST: 0.3,
+        "illumination_change": 1.0,
+        "marker_covered": 0.6,
+        "lost_rover": 0.3,
     },
     reasons={Reason.UNSTABLE_IMAGES: 0.5, Reason.NOT_SEEN: 0.2},
     cost_s=100.0,
@@ -53,7 +53,7 @@ BACK_UP = Strategy(
     name="back_up",
     doc="The robot ran past the way-point: back up to before it, and drive there in short stages.",
     tree=_HERE / "back_up.yaml",
-    answers={Hypothesis.OVERSHOOT: 1.0},
+    answers={"overshoot": 1.0},
     reasons={Reason.OVERSHOOT: 0.6},
     cost_s=30.0,
     excursion_m=0.1,
