@@ -1,4 +1,4 @@
-"""Count how many seeds of each scenario are reached: `python benchmarks/acceptance.py [--seeds 20] [--rows FILE]`.
+"""Count how many seeds of each scenario are reached: `python benchmarks/acceptance.py --seeds 20`.
 
 Each run is one line in FILE (default rows.jsonl beside this script); runs that are there already are not
 repeated, so it may be interrupted. The table printed at the end is made from FILE alone.

@@ -1,7 +1,7 @@
 """How honest the covariance of the marker poses is: `python benchmarks/nees.py [--number 400] [--seed 5]`.
 
-Robots all over the yard, tilted a little, every other one with some faces covered: errors of the pose found in
-units of its covariance (NEES, 6 expected), by the number of faces that it rests on.
+Robots all over the yard, tilted a little, every other one with some faces covered: errors of the pose found
+in units of its covariance (NEES, 6 expected), by the number of faces that it rests on.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=5)
     given = parser.parse_args()
     rng, rig = np.random.default_rng(given.seed), YardRig()
-    model = HuskyModel(rig.husky, rig.box)
+    model = HuskyModel(rig.rover, rig.box)
     corners_m = np.concatenate([corners_body_m(rig.box, face) for face in FACES])
     squares: dict[int, list[float]] = defaultdict(list)
     errors: dict[int, list[np.ndarray]] = defaultdict(list)
@@ -44,7 +44,9 @@ def main() -> None:
         window = window_around(rig.camera, project(rig.camera, turned.apply(corners_m) + place), 25.0)
         if window is None:
             continue
-        found = solve(rig.camera, rig.box, find_markers(draw(model.client, rig.camera, window, 1.0, rng), window))
+        found = solve(
+            rig.camera, rig.box, find_markers(draw(model.client, rig.camera, window, 1.0, rng), window)
+        )
         if isinstance(found, str):
             refused[found] += 1
             continue
@@ -60,7 +62,7 @@ def main() -> None:
             f"{faces:5} {len(nees):7} {np.mean(nees):5.1f} {np.percentile(nees, 95):5.1f} {max(nees):5.1f}"
             f"   {1e3 * rms[0]:5.1f} {1e3 * rms[1]:5.1f}   {np.degrees(rms[5]):10.2f}"
         )
-    every = np.concatenate([nees for nees in squares.values()])
+    every = np.concatenate(list(squares.values()))
     print(f"  all {len(every):7} {every.mean():5.1f} {np.percentile(every, 95):5.1f} {every.max():5.1f}")
     for reason, count in refused.items():
         print(f"refused {count}: {reason}")

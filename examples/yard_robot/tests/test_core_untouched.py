@@ -43,10 +43,8 @@ def test_wheel_holds_the_checkouts_core_and_nothing_else(wheel):
             for name in archive.namelist()
             if name.split("/")[0] in CORE
         }
-    committed = [name for name in git("ls-files", "--", *CORE).splitlines()]
-    assert packed == {
-        name: hashlib.sha256((CHECKOUT / name).read_bytes()).hexdigest() for name in committed
-    }
+    committed = git("ls-files", "--", *CORE).splitlines()
+    assert packed == {name: hashlib.sha256((CHECKOUT / name).read_bytes()).hexdigest() for name in committed}
 
 
 @pytest.mark.slow
@@ -54,7 +52,9 @@ def test_mission_runs_on_the_installed_wheel_in_an_empty_folder(wheel, tmp_path)
     site, empty = tmp_path / "site", tmp_path / "empty"
     empty.mkdir()
     install = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation"]
-    subprocess.run([*install, "--target", str(site), str(wheel), str(CHECKOUT / "examples/yard_robot")], check=True)
+    subprocess.run(
+        [*install, "--target", str(site), str(wheel), str(CHECKOUT / "examples/yard_robot")], check=True
+    )
     program = "import executive, sys; print(executive.__file__); from executive.cli import main; main()"
     scenario = site / "yard_robot" / "scenarios" / "yard_round.yaml"
     ended = subprocess.run(

@@ -21,7 +21,7 @@ RIG = YardRig()
 
 @pytest.fixture(scope="module")
 def model() -> Iterator[HuskyModel]:
-    made = HuskyModel(RIG.husky, RIG.box)
+    made = HuskyModel(RIG.rover, RIG.box)
     yield made
     made.close()
 

@@ -41,7 +41,7 @@ def test_encoders_count_what_was_commanded(world):
 def test_turn_on_the_spot_follows_the_grounds_efficiency(world):
     finish(world, world.wheels.drive(-0.4, 0.4, SPEED))
     efficiency = world.config.ground.turning
-    assert heading(world) == pytest.approx(efficiency * 0.8 / world.rig.husky.gauge_m, abs=5e-3)
+    assert heading(world) == pytest.approx(efficiency * 0.8 / world.rig.rover.track_gauge_m, abs=5e-3)
 
 
 def test_slip_shortens_the_way_but_not_the_count(world):

@@ -6,10 +6,12 @@ from collections.abc import Mapping
 
 from executive.config.backends import BackendRequest, BackendSpec
 from executive.core.clock import Clock, Stopwatch
+from executive.core.devices import INCLINOMETER, LINK
 from executive.core.errors import LongarmError
+from executive.core.ports import Devices
 
-from yard_robot import today
 from yard_robot.config import YardConfig
+from yard_robot.devices import BATTERY, POLE_CAMERA, WHEELS
 from yard_robot.link import YardLink
 from yard_robot.rig import YardRig
 from yard_robot.truth import TruthFile
@@ -24,13 +26,20 @@ class YardBackend:
             raise LongarmError(f"got a world of type {type(request.world).__name__}, expected a YardConfig")
         self.clock = Clock(request.tick_s)
         self._watch = Stopwatch()
-        yard_rig = YardRig()
-        self.rig = today.rig_of(yard_rig)
+        if not isinstance(request.rig, YardRig):
+            raise LongarmError(f"got a rig of type {type(request.rig).__name__}, expected a YardRig")
+        self.rig = request.rig
         with self._watch.measure("physics"):
-            self.world = World(request.world, request.route, request.seed, yard_rig, self.clock)
+            self.world = World(request.world, request.route, request.seed, self.rig, self.clock)
         self._truth = TruthFile(request.truth_path, self.world)
         self._link = YardLink(self.clock)
-        self.devices = today.devices(self.world, self._link)
+        self.devices = Devices(
+            WHEELS.fit(self.world.wheels),
+            BATTERY.fit(self.world.gauge),
+            POLE_CAMERA.fit(self.world.eye),
+            INCLINOMETER.fit(self.world.inclinometer),
+            LINK.fit(self._link),
+        )
 
     def advance(self) -> None:
         """Let one tick of mission time pass."""
@@ -61,5 +70,7 @@ BACKEND = BackendSpec(
     doc="A husky in a level yard, seen by a camera on a pole; PyBullet.",
     world_model=YardConfig,
     tiers=("full",),
+    devices=("wheels", "battery", "pole_camera", "inclinometer", "link"),
+    rig=YardRig,
     create=YardBackend,
 )

@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from executive.core.ports import Action, LocaliseRequest
+from executive.core.clock import Clock
+from executive.core.errors import LongarmError
+from executive.core.ports import Action, Devices, LocaliseRequest
+from executive.core.rig import Rig
 from executive.core.types import Outcome, PoseEstimate, Reason, Source, Vec2, View, Window
 from scipy.spatial.transform import Rotation
 
 from yard_robot.detection import DARK_COUNTS, brightness, find_markers
+from yard_robot.devices import POLE_CAMERA
 from yard_robot.eye import Eye, Picture
 from yard_robot.marker_box import FACES, Array, corners_body_m
 from yard_robot.marker_pose import MarkerPose, solve
@@ -69,6 +73,13 @@ class MarkerLocalizer:
         """Where the pose found puts the corners of the markers seen [px]."""
         body_m = np.concatenate([corners_body_m(self._rig.box, face) for face in seen])
         return project(self._rig.camera, found.position_m + body_m @ found.rotation.T)
+
+
+def make_localizer(devices: Devices, rig: Rig, clock: Clock) -> MarkerLocalizer:
+    """The localizer on a robot's devices."""
+    if not isinstance(rig, YardRig):
+        raise LongarmError(f"got a rig of type {type(rig).__name__}, expected a YardRig")
+    return MarkerLocalizer(devices[POLE_CAMERA], rig)
 
 
 class _Looking:

@@ -91,7 +91,7 @@ def _marker(client: int, box: MarkerBox, number: int, face: str) -> int:
     black = np.argwhere(bits(number, box.cells))
     cell_m = box.marker_m / box.cells
     squares = (black[:, ::-1] - box.cells / 2) * cell_m
-    whole = box.edge_m * np.array([[-0.5, -0.5]], dtype=np.float64)
+    whole = np.array([[-box.edge_m / 2, -box.edge_m / 2]], dtype=np.float64)
     body = pybullet.createMultiBody(
         baseVisualShapeIndex=_quads(client, box, face, whole, box.edge_m, 1, _WHITE),
         linkMasses=[0],

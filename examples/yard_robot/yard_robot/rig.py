@@ -14,7 +14,7 @@ Vec3 = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Husky:
-    """The chassis. `gauge_m` is the effective one: a skid-steered robot turns as if it were wider."""
+    """The chassis. `track_gauge_m` is the effective one: a skid-steered robot turns as if it were wider."""
 
     wheel_radius_m: float = 0.17775
     wheel_width_m: float = 0.114
@@ -23,12 +23,14 @@ class Husky:
     chassis_width_m: float = 0.45
     chassis_height_m: float = 0.25
     chassis_middle_m: float = 0.27
-    gauge_m: float = 0.8562
+    track_gauge_m: float = 0.8562
     speed_m_s: float = 0.3
     mass_kg: float = 49.0
     length_m: float = 0.99
     width_m: float = 0.67
-    height_m: float = 0.80
+    height_m: float = 0.82
+    tilt_limit_rad: float = math.radians(30.0)
+    tether_limit_n: float | None = None
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,6 @@ class PoleCamera:
 class YardRig:
     """All of it; what simulation and localizer share."""
 
-    husky: Husky = Husky()
+    rover: Husky = Husky()
     box: MarkerBox = MarkerBox()
     camera: PoleCamera = PoleCamera()

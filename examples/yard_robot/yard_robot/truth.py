@@ -44,14 +44,8 @@ class TruthFile:
         return TruthEvent(
             position_site_m=position_m,
             quat_site_body=quat,
-            pan_rad=0.0,
-            tilt_rad=0.0,
-            arm_rad=0.0,
-            cabin_rad=0.0,
             slip_left=world.slip[0],
             slip_right=world.slip[1],
-            tether_m=0.0,
-            tether_n=0.0,
         )
 
     def _ground(self) -> None:

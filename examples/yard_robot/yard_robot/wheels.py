@@ -50,6 +50,12 @@ class Wheels:
             action, self._action = self._action, None
             action.end(Outcome(Reason.CANCELLED))
 
+    def fail(self, why: str) -> None:
+        """Stop all wheels because the device cannot go on."""
+        if self._action is not None:
+            action, self._action = self._action, None
+            action.end(Outcome(Reason.DEVICE, why, self.read()))
+
     def speeds(self, step_s: float) -> Pair:
         """The treads' speeds for the next step, so that they are where they should be after it."""
         if self._action is None:

@@ -50,11 +50,12 @@ class World:
         self.area_m = area_of(route)
         self.ground = Ground(config.ground, route, generator(seed, "ground"))
         self._client = _connect(config.gravity)
-        self.body = HuskyBody(self._client, rig.husky, *_start(config, route, generator(seed, "start")))
-        self.model = HuskyModel(rig.husky, rig.box)
+        self.body = HuskyBody(self._client, rig.rover, *_start(config, route, generator(seed, "start")))
+        self.model = HuskyModel(rig.rover, rig.box)
         self._counted_m: Pair = (0.0, 0.0)
         self.wheels = Wheels(clock, generator(seed, "wheels"), lambda: self._counted_m)
         tilt_rng, picture_rng = generator(seed, "inclinometer"), generator(seed, "camera")
+        self.gauge = PerTick(lambda: self.battery.read(clock.now_s), lambda: clock.ticks)
         self.inclinometer = PerTick(lambda: self._tilt(tilt_rng), lambda: clock.ticks)
         self.eye = SimEye(clock, rig.camera.exposure_s, self._drawer(picture_rng))
         self._asleep, self._rested = False, True
@@ -70,6 +71,8 @@ class World:
         self.clock.advance()
         left_a, right_a = np.mean(loads_a, axis=0).tolist()
         self.wheels.load_a = left_a, right_a
+        if self.battery.charge <= 0.0:
+            self.wheels.fail("no power")
         self.wheels.settle()
         self.battery.pass_time(tick_s, _VOLTS * (left_a + right_a), self.light)
         if not self.wheels.turning:
@@ -92,14 +95,14 @@ class World:
         here = self.ground.slip(float(x), float(y))
         slips = tuple(1.0 - (1.0 - here) * (1.0 - own) for own in self.slip)
         left, right = (v * (1.0 - slip) for v, slip in zip(treads_m_s, slips, strict=True))
-        turn_rad_s = self.ground.turning(float(x), float(y)) * (right - left) / self.rig.husky.gauge_m
+        turn_rad_s = self.ground.turning(float(x), float(y)) * (right - left) / self.rig.rover.track_gauge_m
         self.body.move((left + right) / 2, turn_rad_s, treads_m_s)
         pybullet.stepSimulation(physicsClientId=self._client)
         self.lost_m += STEP_S * sum(abs(v) * own for v, own in zip(treads_m_s, self.slip, strict=True)) / 2
         counted = [c + v * STEP_S for c, v in zip(self._counted_m, treads_m_s, strict=True)]
         self._counted_m = counted[0], counted[1]
         scrub = abs(right - left) / (abs(right) + abs(left) + 1e-9)
-        full = self.rig.husky.speed_m_s
+        full = self.rig.rover.speed_m_s
         loads = [
             IDLE_A + (ROLLING_A + SCRUBBING_A * scrub) * abs(v) / full * (1.0 - _SPIN_SAVES * slip)
             for v, slip in zip(treads_m_s, slips, strict=True)

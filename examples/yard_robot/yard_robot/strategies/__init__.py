@@ -59,3 +59,13 @@ BACK_UP = Strategy(
     excursion_m=0.1,
     tries_per_segment=4,
 )
+
+RECHARGE = Strategy(
+    name="recharge",
+    doc="The battery is low: wait at rest until the sun has charged it.",
+    tree=_HERE / "recharge.yaml",
+    answers={"battery_low": 1.0},
+    reasons={Reason.DEVICE: 0.3},
+    cost_s=200.0,
+    tries_per_segment=3,
+)
