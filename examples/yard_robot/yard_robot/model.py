@@ -90,7 +90,7 @@ def _marker(client: int, box: MarkerBox, number: int, face: str) -> int:
     """A marker as two meshes: white paper as large as the face, black cells a little over it."""
     black = np.argwhere(bits(number, box.cells))
     cell_m = box.marker_m / box.cells
-    squares = (black[:, ::-1] - box.cells / 2) * cell_m
+    squares = (black[:, ::-1].astype(np.float64) - box.cells / 2) * cell_m
     whole = np.array([[-box.edge_m / 2, -box.edge_m / 2]], dtype=np.float64)
     body = pybullet.createMultiBody(
         baseVisualShapeIndex=_quads(client, box, face, whole, box.edge_m, 1, _WHITE),
