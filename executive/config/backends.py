@@ -57,6 +57,8 @@ class BackendSpec:
     `devices` are names of registered devices, one of them a drive: what trees need is held against them.
     `rig` is a frozen dataclass whose fields all have defaults; a scenario's `rig:` may replace each of them.
 
+    `strategies` are those made for it, by name (None: any whose devices it has).
+
     `problems` tells, before anything is made or written, why a world cannot be made for a route. `preload`
     imports what `create` needs, for a process that is about to make many.
     """
@@ -68,6 +70,7 @@ class BackendSpec:
     devices: tuple[str, ...]
     rig: type[Rig]
     create: Callable[[BackendRequest], Backend]
+    strategies: tuple[str, ...] | None = None
     problems: Callable[[BaseModel, tuple[Segment, ...]], tuple[WorldProblem, ...]] = no_problems
     preload: Callable[[], None] = nothing_to_load
 

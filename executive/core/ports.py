@@ -140,6 +140,11 @@ class Devices:
         """The device, None if this robot has none."""
         return self[spec] if spec.name in self._by_name else None
 
+    @property
+    def names(self) -> frozenset[str]:
+        """Every name that a device answers to."""
+        return frozenset(self._by_name)
+
     def named(self, name: str) -> object:
         """The device of this name; KeyError if there is none."""
         return self._by_name[name].device

@@ -82,8 +82,15 @@ class Classification:
         """Weigh the reason of a failure; a blocked drive inflates what was predicted since the last fix."""
         if outcome.reason is Reason.BLOCKED:
             self.tracker.on_blocked()
-        readings = self.tracker.readings
-        self._weigh(Comparison(self._clock.now_s, self.motion, failure=outcome.reason, readings=readings))
+        self._weigh(
+            Comparison(
+                time_s=self._clock.now_s,
+                motion=self.motion,
+                failure=outcome.reason,
+                detail=outcome.detail,
+                readings=self.tracker.readings,
+            )
+        )
         return self._assessed()
 
     def assess(self) -> Assessment:

@@ -70,9 +70,9 @@ class SinceFix:
 class Comparison:
     """Everything that an evidence channel may be read from.
 
-    At a fix `fix` and `innovation` are there, at a failure its reason. `readings` are the latest of the
-    devices, `usual_current_a` the mean motor current of drives that went as predicted (None: none yet),
-    `markers_expected` how many markers a fix should rest on (0: the localizer uses none).
+    At a fix `fix` and `innovation` are there, at a failure its reason and what was said of it. `readings` are
+    the latest of the devices, `usual_current_a` the mean motor current of drives that went as predicted
+    (None: none yet), `markers_expected` how many markers a fix should rest on (0: the localizer uses none).
     """
 
     time_s: float
@@ -80,6 +80,7 @@ class Comparison:
     fix: PoseEstimate | None = None
     innovation: Innovation | None = None
     failure: Reason | None = None
+    detail: str = ""
     since: SinceFix = field(default_factory=SinceFix)
     readings: Readings = field(default_factory=Readings)
     usual_current_a: float | None = None

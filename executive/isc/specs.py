@@ -25,7 +25,8 @@ class Channel:
     """A quantity that a check may yield.
 
     `observe` reads it off a comparison of measurement and prediction, None where that does not show it.
-    `nominal` is its likelihood when all is well; `unit` is SI, "" for a pure number or a category.
+    `nominal` is its likelihood when all is well; `unit` is SI, "" for a pure number or a category. Robots
+    that lack a device it `needs` do not have it.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Channel:
     unit: str
     nominal: Likelihood
     observe: Callable[[Comparison], Measured[Any] | None]
+    needs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,7 @@ class Hypothesis:
 
     `signature` gives its likelihoods on the channels, by name, that it speaks about. On all others it takes
     the nominal one, so that silence neither helps nor hurts it. `prior` is its share among the anomalies.
+    Robots that lack a device it `needs` do not weigh it.
     """
 
     name: str
@@ -48,3 +51,4 @@ class Hypothesis:
     signature: Mapping[str, Likelihood] = field(hash=False)
     prior: float = 1.0
     concerns: Concern = Concern.MOTION
+    needs: tuple[str, ...] = ()

@@ -78,7 +78,7 @@ def _choice(decision: Decision, situation: Situation, candidates: tuple[Candidat
         return Choice(situation.time_s, None, *situation.assessment.anomaly, decision.why, candidates)
     answered, weight = situation.assessment.anomaly
     if strategy.answers:
-        answered = max(strategy.answers, key=lambda h: strategy.answers[h] * weights[h])
-        weight = weights[answered]
+        answered = max(strategy.answers, key=lambda h: strategy.answers[h] * weights.get(h, 0.0))
+        weight = weights.get(answered, 0.0)
     why = f"answers {answered} and {situation.failure.reason}; cost {strategy.cost_s:.0f} s"
     return Choice(situation.time_s, strategy.name, answered, weight, decision.why or why, candidates)

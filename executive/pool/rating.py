@@ -14,7 +14,7 @@ LEAST_FITNESS = 0.1  # below this a remedy is a shot in the dark; ground decides
 def relevance(strategy: Strategy, situation: Situation) -> float:
     """How well it answers what is likely and what failed."""
     weights = situation.assessment.weights
-    explained = sum(weights[h] * a for h, a in strategy.answers.items() if weights[h] >= LEAST_WEIGHT)
+    explained = sum(w * a for h, a in strategy.answers.items() if (w := weights.get(h, 0.0)) >= LEAST_WEIGHT)
     return explained + strategy.reasons.get(situation.failure.reason, 0.0)
 
 

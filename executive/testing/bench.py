@@ -76,7 +76,11 @@ class Bench:
             rig=self.backend.rig,
             localizer=OverheadLocalizer(self.backend.devices, self.backend.rig, clock),
             classification=Classification(
-                prior_pose(route[0]), self.backend.rig, clock, known_hypotheses(), known_channels()
+                prior_pose(route[0]),
+                self.backend.rig,
+                clock,
+                known_hypotheses(self.backend.devices.names),
+                known_channels(self.backend.devices.names),
             ),
             pool=Pool(strategies, journal.strategy, FIRST_FITTED),
             journal=journal,

@@ -34,9 +34,12 @@ def missing(tree: TreeSpec, backend: BackendSpec) -> tuple[Problem, ...]:
 
 
 def unfit(strategies: Mapping[str, TreeSpec], backend: BackendSpec) -> dict[str, str]:
-    """Of each strategy whose tree this backend cannot run: what it needs."""
+    """Of each strategy that is not for this backend, why: not made for it, or what its tree needs."""
     there, found = devices_of(backend), {}
     for name, tree in strategies.items():
+        if backend.strategies is not None and name not in backend.strategies:
+            found[name] = f"not made for {backend.name}"
+            continue
         lacking = sorted({device for _, device in _lacking(tree, there)})
         if lacking:
             found[name] = f"needs {', '.join(lacking)}, which this robot does not have"

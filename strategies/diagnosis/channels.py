@@ -85,4 +85,6 @@ CURRENT_RATIO = Channel(
 FAILURE = Channel(
     "failure", "Why something failed.", "", Categorical(frozenset({Reason.DONE}), 0.7, 0.01), _failure
 )
-TETHER = Channel("tether", "Pull of the tether at the spool.", "N", Gaussian(0.5, 1.0), _tether)
+TETHER = Channel(
+    "tether", "Pull of the tether at the spool.", "N", Gaussian(0.5, 1.0), _tether, needs=("tether",)
+)

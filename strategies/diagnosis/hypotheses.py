@@ -54,6 +54,7 @@ TETHER_SNAG = Hypothesis(
         "advance_ratio": Gaussian(0.4, 0.4),
         "failure": _failing(Reason.TETHER),
     },
+    needs=("tether",),
 )
 MARKER_LOST = Hypothesis(
     "marker_lost",
@@ -99,4 +100,5 @@ HEAD_MISALIGNED = Hypothesis(
     "The head does not look where its encoders say.",
     {"failure": _failing(Reason.MISALIGNED)},
     concerns=Concern.REFERENCE,
+    needs=("head",),
 )
