@@ -22,7 +22,7 @@ from executive.record.run_result import (
     read_result,
     write_result,
 )
-from executive.record.signals import heard, live_types
+from executive.record.signals import listener, live_types
 from executive.record.versions import versions
 
 __all__ = [
@@ -48,8 +48,8 @@ __all__ = [
     "first_leading",
     "first_violated",
     "free_folder",
-    "heard",
     "leading",
+    "listener",
     "live_types",
     "read_record",
     "read_result",

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from executive.core import registry
+from executive.core.device_spec import DEVICE_KIND
 from executive.core.types import Array
-from executive.record.events import Telemetry
+from executive.record.events import DeviceReading, Telemetry
+from executive.record.history import At
 from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, time_axis, timed
 from executive.report.figure import Figure
@@ -30,18 +33,54 @@ class Series(NamedTuple):
     dots: bool = False
 
 
+Panel = tuple[str, Sequence[Series]]
+"""A title with the unit, and the lines."""
+
+
 def telemetry(run: Run) -> Figure | None:
-    """Six panels over the same mission time; None where no telemetry was recorded."""
+    """A panel for each channel over the same mission time; None where no telemetry was recorded."""
+    panels = [*_of_rover(run), *of_devices(run)]
+    if not panels:
+        return None
+    cards = "".join(_panel(run, title, series) for title, series in panels if series)
+    caption = (
+        "What the devices reported, one sample a tick. The slip estimate compares, "
+        "from one localisation to the next, the distance covered with what the belts travelled; it is 0 "
+        "where the tracks grip and 1 where they spin in place. Stretches with less than 20 mm of travel "
+        "are left out."
+    )
+    return Figure("telemetry", "Telemetry", f"<div class='panels'>{cards}</div>", caption)
+
+
+def of_devices(run: Run) -> Iterator[Panel]:
+    """A panel for each quantity that a device reported on its own, in the unit of its type."""
+    known = registry.every(DEVICE_KIND)
+    by_device: dict[str, list[At[DeviceReading]]] = {}
+    for at in run.history.all(DeviceReading):
+        by_device.setdefault(at.event.device, []).append(at)
+    for device, samples in sorted(by_device.items()):
+        quantities = known[device].quantities if device in known else ()
+        units = {quantity.name: quantity.type.unit for quantity in quantities}
+        t = np.array([at.time_s for at in samples])
+        for name in sorted({name for at in samples for name in at.event.values}):
+            unit = units.get(name)
+            factor, shown = (180 / math.pi, "deg") if unit == "rad" else (1.0, unit or "-")
+            values = np.array([at.event.values.get(name, math.nan) for at in samples]) * factor
+            yield f"{device}: {name} [{shown}]".replace("_", " "), [Series(name, palette.ESTIMATE, t, values)]
+
+
+def _of_rover(run: Run) -> list[Panel]:
+    """Six panels of what a rover with head and tether reports together; none for any other robot."""
     samples = run.history.all(Telemetry)
     if not samples:
-        return None
+        return []
     t = np.array([at.time_s for at in samples])
 
     def channel(name: str, factor: float = 1.0) -> Array:
         return np.array([getattr(at.event, name) for at in samples]) * factor
 
     degrees, left, right = 180 / math.pi, palette.ESTIMATE, palette.FIX
-    panels = [
+    return [
         (
             "motor current [A]",
             [
@@ -70,14 +109,6 @@ def telemetry(run: Run) -> Figure | None:
         ),
         ("tether tension [N]", [Series("tension", left, t, channel("tether_n"))]),
     ]
-    cards = "".join(_panel(run, title, series) for title, series in panels if series)
-    caption = (
-        "What the rover, the head and the tether reported, one sample a tick. The slip estimate compares, "
-        "from one localisation to the next, the distance covered with what the belts travelled; it is 0 "
-        "where the tracks grip and 1 where they spin in place. Stretches with less than 20 mm of travel "
-        "are left out."
-    )
-    return Figure("telemetry", "Telemetry", f"<div class='panels'>{cards}</div>", caption)
 
 
 def _panel(run: Run, title: str, series: Sequence[Series]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from executive.core.types import Call
-from executive.record import events, heard, live_types
+from executive.record import events, listener, live_types
 from executive.tree.addresses import means
 from executive.tree.expressions.guards import parse_guard
 from proving.inject.triggers import Trigger
@@ -21,10 +21,11 @@ class Sightings:
         self.entered: Counter[tuple[str, str]] = Counter()
         self.waypoints: set[int] = set()
         self.values: dict[str, float] = {}
+        self._heard = listener()
         self._running: set[str] = set()
 
     def hear(self, event: object) -> None:
-        self.values.update(heard(event))
+        self.values.update(self._heard(event))
         if isinstance(event, events.NodeChange):
             self._node(event)
         elif isinstance(event, events.StrategyEvent) and event.verdict is events.Verdict.CHOSEN:
@@ -45,7 +46,7 @@ class Sightings:
 
 
 def _phase(command: events.Command) -> str | None:
-    if (command.device, command.verb) == ("tracks", "drive"):
+    if command.verb == "drive" and {"left_m", "right_m"} <= command.values.keys():
         return "driving" if command.values["left_m"] * command.values["right_m"] >= 0.0 else "turning"
     return "localising" if command.device == "cameras" else None
 

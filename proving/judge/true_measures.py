@@ -13,8 +13,8 @@ from executive.record.events import (
     SegmentEvent,
     Start,
     Stop,
-    Telemetry,
 )
+from executive.record.signals import signals
 from executive.record.truth import (
     CrossTrack,
     Track,
@@ -60,16 +60,28 @@ def at_rest(history: History, world: History) -> JudgedRow:
 
     Unknown (None) where the record breaks off, as of a killed process: nobody saw the end of that drive.
     """
-    told, track = history.last(Telemetry), Track.of(world)
+    told, track = _last_moving(history), Track.of(world)
     if told is None and track is None:
         return row("at rest at the end", None, warning="neither truth nor telemetry was recorded")
     if history.last(Stop) is None:
         return row("at rest at the end", None, warning="the record ends without a stop")
-    moving = told is not None and told.event.moving
+    moving = bool(told)
     speed_m_s = 0.0 if track is None else _last_speed_m_s(track, history)
     spare_m_s = None if track is None else REST_M_S - speed_m_s
     met = speed_m_s < REST_M_S and not moving
     return row("at rest at the end", met, spare_m_s, "m/s", history.end_s)
+
+
+def _last_moving(history: History) -> float | None:
+    """Whether the drive reported that it moves, in its last sample; None without a sample."""
+    moving = signals()["moving"]
+    told = [
+        (at.time_s, value)
+        for kind in moving.events
+        for at in history.all(kind)
+        if (value := moving.read(at.event)) is not None
+    ]
+    return max(told, key=lambda sample: sample[0])[1] if told else None
 
 
 def _last_speed_m_s(track: Track, history: History) -> float:

@@ -70,8 +70,8 @@ def recorded(names: Iterable[str], history: History, world: History) -> Trace:
 
 def _samples(name: str, history: History) -> Samples:
     signal = signals()[name]
-    told = [(at.time_s, signal.read(at.event)) for at in history.all(signal.event)]
-    given = [(time_s, value) for time_s, value in told if value is not None]
+    told = [(at.time_s, signal.read(at.event)) for kind in signal.events for at in history.all(kind)]
+    given = sorted(((t, value) for t, value in told if value is not None), key=lambda sample: sample[0])
     return np.array([t for t, _ in given], dtype=np.float64), np.array(
         [v for _, v in given], dtype=np.float64
     )

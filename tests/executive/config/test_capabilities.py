@@ -3,6 +3,8 @@
 import pytest
 
 from executive.core.errors import ConfigError
+from executive.record.events import DeviceReading
+from executive.record.signals import listener, signals
 from executive.run.check import check_file
 from executive.run.resolve import resolve_scenario
 from executive.testing import BACKEND, fake_with
@@ -63,3 +65,8 @@ def test_a_rig_without_a_tether_is_dumped_without_a_limit(folder):
     assert "tether_limit" not in resolved.dump()
     (folder / "dumped.yaml").write_text(resolved.dump())
     assert resolve_scenario("dumped.yaml") == resolved
+
+
+def test_what_a_plugged_in_device_reports_is_a_signal(folder):
+    assert signals()["battery_charge"].doc == "what is left, 0 to 1"
+    assert dict(listener()(DeviceReading("battery", {"charge": 0.5}))) == {"battery_charge": 0.5}
