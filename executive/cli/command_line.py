@@ -69,9 +69,7 @@ FILE = click.Path(path_type=Path)
 @click.argument("file", type=FILE)
 @click.option("--seed", type=int, help="Replace the scenario's seed.")
 @click.option("--out", type=FILE, help="Where to write the run folder.")
-@click.option(
-    "--tier", type=click.Choice(["full", "geometric"]), help="Images, or their measured error model."
-)
+@click.option("--tier", help="Replace the scenario's tier: one that its backend has.")
 @click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Replace one value of the scenario."
 )

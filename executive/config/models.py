@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -12,6 +12,7 @@ from executive.config.validate import Strict
 from executive.core.types import Point, Segment
 from executive.core.units import Duration, Length
 
+DEFAULT_LOCALIZER = "led_stereo"
 Margin = Annotated[Length, Field(gt=0)]
 
 
@@ -63,7 +64,8 @@ class MissionFile(Strict):
 
 
 class ScenarioFile(Strict):
-    """A mission, a world, a seed, faults, expectations. `world`, `rig` and `faults` are read further on.
+    """A mission, a world, a seed, faults, expectations. `localizer`, `world`, `rig` and `faults` are read
+    further on. Without a `tier`, the backend's first is meant.
 
     `expected_to_fail` says why the expectations do not hold yet; the run's safety must, all the same.
     """
@@ -72,9 +74,9 @@ class ScenarioFile(Strict):
     doc: str = ""
     mission: MissionFile
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    tier: Literal["full", "geometric"] = "full"
+    tier: Name | None = None
     backend: Name = "pybullet"
-    localizer: Name = "led_stereo"
+    localizer: Any = DEFAULT_LOCALIZER
     world: dict[str, Any] = Field(default_factory=dict)
     rig: dict[str, Any] = Field(default_factory=dict)
     faults: tuple[dict[str, Any], ...] = ()

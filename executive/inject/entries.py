@@ -66,10 +66,10 @@ class ResolvedFault:
 
 @dataclass(frozen=True)
 class Setting:
-    """Where the faults are to act: which backend in which tier, along how many way-points."""
+    """Where the faults are to act: which backend in which tier (None: unknown), along how many way-points."""
 
     backend: str
-    tier: str
+    tier: str | None
     waypoints: int
 
 
@@ -152,7 +152,7 @@ def _spec(source: Source, place: Place, kind: str, setting: Setting) -> FaultSpe
     spec = plugins.load(plugins.FAULTS, kind, FaultSpec)
     fits = (("backend", setting.backend, spec.backends), ("tier", setting.tier, spec.tiers))
     for what, got, able in fits:
-        if able and got not in able:
+        if able and got is not None and got not in able:
             message = f"got {kind} with the {what} {got}, which it cannot act in; expected {listed(able)}"
             raise ConfigError([source.key_at(place).problem(message)])
     return spec

@@ -12,9 +12,9 @@ from executive.core.rig import RigCalibration
 from executive.core.types import (
     Outcome,
     PoseEstimate,
+    PoseSource,
     Reason,
     Segment,
-    Source,
     TetherReading,
     TiltReading,
     TrackReading,
@@ -142,7 +142,7 @@ class Classification:
         if self._undoubted is not None:  # measured again: a false fix would not have repeated itself
             self.weights = without(self.weights, Hypothesis.LOCALISATION_OUTLIER)
             self._undoubted = None
-        if self._motion_explained > 0.5 or self.motion.source is Source.PRIOR:
+        if self._motion_explained > 0.5 or self.motion.source == PoseSource.PRIOR:
             self.motion = prediction.correct(self.motion, fix, self.noise)
         else:
             self.motion = prediction.relocate(self.motion, fix)

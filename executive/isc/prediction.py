@@ -16,8 +16,8 @@ import numpy as np
 from executive.core.types import (
     Array,
     PoseEstimate,
+    PoseSource,
     Quat,
-    Source,
     TiltReading,
     frozen_array,
 )
@@ -55,7 +55,7 @@ class MotionState:
     height_sigma_m: float
     roll_rad: float = 0.0
     pitch_rad: float = 0.0
-    source: Source = Source.PRIOR
+    source: str = PoseSource.PRIOR
 
     @property
     def advance(self) -> float:
@@ -157,7 +157,7 @@ def predict(
         mean=frozen_array(mean, (6,)),
         covariance=frozen_array(covariance, (6, 6)),
         height_sigma_m=math.hypot(state.height_sigma_m, noise.climb_per_m * abs(forward)),
-        source=Source.PREDICTION,
+        source=PoseSource.PREDICTION,
     )
 
 

@@ -9,11 +9,11 @@ from executive.core.clock import Clock
 from executive.core.ports import Devices
 from executive.core.types import (
     Call,
+    CameraView,
     Images,
     Outcome,
     PoseEstimate,
     Segment,
-    View,
 )
 from executive.isc.classification import Assessment, Telemetry
 from executive.pool.pool import Attempt, Choice
@@ -70,7 +70,7 @@ class RunJournal:
         weights = {str(h): w for h, w in assessment.weights.items()}
         self.write(events.HypothesesEvent(weights, assessment.time_to_margin_s))
 
-    def views(self, views: tuple[View, ...], outcome: Outcome[object]) -> None:
+    def views(self, views: tuple[CameraView, ...], outcome: Outcome[object]) -> None:
         """Keep every fifth look, and each that failed."""
         self._looks += 1
         if outcome.ok and self._looks % KEEP_EVERY != 1:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from executive.core.types import PoseEstimate, Reason, Source
+from executive.core.types import PoseEstimate, Reason
 from executive.record.digest import digest
 from executive.record.events import (
     NodeChange,
@@ -34,7 +34,6 @@ from executive.record.truth import (
 SCHEMA = 1
 NO_STOP = "the record ends without a stop"
 VISION_REASONS = frozenset({Reason.NOT_SEEN, Reason.POOR_VIEW, Reason.UNSTABLE_IMAGES, Reason.IMPLAUSIBLE})
-_FIXES = frozenset({Source.MARKERS, Source.PASSIVE})
 _TRUTH_KEYS = (
     "final_error_m",
     "waypoint_errors_m",
@@ -148,7 +147,7 @@ def pose_errors(history: History, track: Track) -> list[PoseError]:
 
 def vision_fixes(history: History) -> list[PoseEstimate]:
     """The precise localisations, in order of time."""
-    return [at.event for at in history.all(PoseEstimate) if at.event.source in _FIXES]
+    return [at.event for at in history.all(PoseEstimate) if at.event.is_fix]
 
 
 def _localisation(history: History, track: Track | None) -> dict[str, object]:

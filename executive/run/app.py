@@ -72,7 +72,6 @@ def run(file: Path, options: RunOptions) -> Finished:
 def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     """The same for a scenario already resolved; of the options, those that change it are without effect."""
     strategies = load_strategies()
-    localizer = plugins.load(plugins.LOCALIZERS, scenario.file.localizer)
     watch = Stopwatch()
     folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
@@ -82,7 +81,7 @@ def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     (folder / "scenario.yaml").write_text(scenario.dump())  # first, so that a run cut off can be repeated
     try:
         with one_thread():
-            end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
+            end = _execute(scenario, strategies, folder, watch, options.bar)
     except LongarmError:
         unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
         raise
@@ -109,7 +108,6 @@ def report(folder: Path) -> Path:
 def _execute(
     scenario: ResolvedScenario,
     strategies: tuple[Strategy, ...],
-    localizer: object,
     folder: Path,
     watch: Stopwatch,
     bar: bool,
@@ -127,7 +125,7 @@ def _execute(
     with Recorder(folder / "record.mcap") as recorder:
         write_start(recorder, scenario)
         try:
-            prepared = set_up(scenario, strategies, localizer, request, recorder, watch)
+            prepared = set_up(scenario, strategies, request, recorder, watch)
         except LongarmError:
             raise
         except Exception as defect:  # a plug-in that cannot even be made

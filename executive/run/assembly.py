@@ -9,14 +9,13 @@ import numpy as np
 
 from executive.config.backends import BackendRequest
 from executive.core.clock import Stopwatch
-from executive.core.errors import PluginError
-from executive.core.ports import Backend, Devices, Localizer
+from executive.core.ports import Backend
 from executive.core.types import (
     Outcome,
     PoseEstimate,
+    PoseSource,
     Reason,
     Segment,
-    Source,
 )
 from executive.inject.faults import TreeParts
 from executive.inject.schedule import FaultSchedule
@@ -46,7 +45,7 @@ def prior_pose(first: Segment) -> PoseEstimate:
         position_site_m=(first.start.x_m, first.start.y_m, 0.0),
         quat_site_body=quat_from_heading_tilt(heading, 0.0, 0.0),
         covariance=np.diag([0.05**2, 0.05**2, 0.20**2, 0.1**2, 0.1**2, 0.6**2]),
-        source=Source.PRIOR,
+        source=PoseSource.PRIOR,
     )
 
 
@@ -60,7 +59,6 @@ def write_start(recorder: Recorder, scenario: ResolvedScenario) -> None:
 def set_up(
     scenario: ResolvedScenario,
     strategies: tuple[Strategy, ...],
-    localizer: object,
     request: BackendRequest,
     recorder: Recorder,
     watch: Stopwatch,
@@ -69,7 +67,7 @@ def set_up(
     with watch.measure("setup"):
         backend = scenario.backend.create(request)
     try:
-        return _prepare(scenario, strategies, localizer, backend, recorder, watch)
+        return _prepare(scenario, strategies, backend, recorder, watch)
     except BaseException:
         backend.safe_stop()
         backend.close()
@@ -79,7 +77,6 @@ def set_up(
 def _prepare(
     scenario: ResolvedScenario,
     strategies: tuple[Strategy, ...],
-    make_localizer: object,
     backend: Backend,
     recorder: Recorder,
     watch: Stopwatch,
@@ -92,11 +89,12 @@ def _prepare(
     devices = logged(faults.wrap(backend.devices), journal.write)
     belts = RestingTracks(devices.tracks)
     devices = replace(devices, tracks=belts)
+    localizer = scenario.localizer.made(devices, backend.rig, backend.clock, scenario.seed, scenario.tier)
     services = Services(
         clock=backend.clock,
         devices=devices,
         rig=backend.rig,
-        localizer=faults.wrap_localizer(_localizer(make_localizer, devices, backend)),
+        localizer=faults.wrap_localizer(localizer),
         classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
         pool=Pool(strategies, journal.strategy),
         journal=journal,
@@ -125,10 +123,3 @@ def _prepare(
         each_tick=each_tick,
         invalid=lambda: faults.conclude(journal),
     )
-
-
-def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:
-    if not callable(make):
-        raise PluginError(f"got a localizer {make!r}, expected something to call")
-    made: Localizer = make(devices=devices, rig=backend.rig, clock=backend.clock)
-    return made

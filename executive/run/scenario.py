@@ -14,13 +14,14 @@ from executive.config.backends import BackendSpec
 from executive.config.distributions import drawn
 from executive.config.expect import Expect, with_lists
 from executive.config.find import find, portable, shown
+from executive.config.known import check_among, check_known
+from executive.config.localizers import ChosenLocalizer, localizer_from
 from executive.config.mission import mission_problems
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.overrides import override
 from executive.config.rig_overrides import rig_fields, rig_from
 from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
-from executive.config.validate import shown as shown_data
 from executive.core import plugins
 from executive.core.chance import generator
 from executive.core.errors import ConfigError, Problem
@@ -49,6 +50,7 @@ class ResolvedScenario:
     faults: tuple[ResolvedFault, ...]
     tree: TreeSpec
     backend: BackendSpec
+    localizer: ChosenLocalizer
     inputs: Mapping[str, object]
     """The mission's `tree_inputs`, in SI, for the tree's ports of these names."""
     instead: Instead = field(default_factory=dict)
@@ -68,7 +70,7 @@ class ResolvedScenario:
 
     @property
     def tier(self) -> str:
-        return self.file.tier
+        return self.file.tier or self.backend.tiers[0]
 
     @property
     def expect(self) -> Expect:
@@ -87,6 +89,7 @@ class ResolvedScenario:
     def dump(self) -> str:
         """YAML with every default written; resolves to an equal value, bit for bit."""
         data = self.file.model_dump(mode="json", by_alias=True, exclude_none=True)
+        data["localizer"] = self.localizer.entry()
         data["world"] = self.world.model_dump(mode="json", by_alias=True, exclude_none=True)
         data["rig"] = rig_fields(self.rig)
         data["faults"] = [fault.entry() for fault in self.faults]
@@ -133,10 +136,11 @@ def resolve(source: Source) -> ResolvedScenario:
     file = problems.attempt(parse, source, ScenarioFile)
     backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
     backend = problems.attempt(_backend, source, backend_name)
-    problems.attempt(_check_localizer, source)
+    tier = problems.attempt(_tier, source, backend) if backend else None
+    localizer = problems.attempt(localizer_from, source, tier)
     world = problems.attempt(_world, source, backend) if backend else None
     rig = problems.attempt(rig_from, source, ("rig",))
-    setting = _setting(source, backend_name)
+    setting = _setting(source, backend_name, tier)
     faults = problems.attempt(fault_entries, source, ("faults",), setting)
     problems.found.extend(expect_problems(source, faults))
     tree_path = problems.attempt(_tree_path, source)
@@ -147,21 +151,25 @@ def resolve(source: Source) -> ResolvedScenario:
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
-        if backend is not None:
-            problems.attempt(_check_tier, source, file.tier, backend)
         if backend is not None and world is not None and not impossible:
             problems.found.extend(_world_problems(source, backend, world, file.mission))
     problems.check()
-    if file is None or backend is None or world is None or rig is None or tree is None or tree_path is None:
+    if tree is None or tree_path is None:
         raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
+    assert file is not None  # noqa: S101  (else a problem was found)
+    assert backend is not None  # noqa: S101  (else a problem was found)
+    assert localizer is not None  # noqa: S101  (else a problem was found)
+    assert world is not None  # noqa: S101  (else a problem was found)
+    assert rig is not None  # noqa: S101  (else a problem was found)
     mission = file.mission.model_copy(update={"tree": portable("trees", tree_path)})
     return ResolvedScenario(
-        file.model_copy(update={"mission": mission, "world": {}, "rig": {}, "faults": ()}),
+        file.model_copy(update={"mission": mission, "tier": tier, "world": {}, "rig": {}, "faults": ()}),
         world,
         rig,
         faults or (),
         tree,
         backend,
+        localizer,
         inputs or {},
     )
 
@@ -200,28 +208,15 @@ def _text(source: Source, key: str, default: str) -> str:
     return value if isinstance(value, str) else default
 
 
-def _setting(source: Source, backend: str) -> Setting:
+def _setting(source: Source, backend: str, tier: str | None) -> Setting:
     """What faults must fit, as far as the file says it; what is wrong with that is told elsewhere."""
     mission = source.data.get("mission") if isinstance(source.data, dict) else None
     points = mission.get("waypoints") if isinstance(mission, dict) else None
-    tier = _text(source, "tier", str(ScenarioFile.model_fields["tier"].default))
     return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
 
 
-def _check_known(source: Source, what: str, group: str, name: str) -> None:
-    known = sorted(plugins.found(group))
-    if name not in known:
-        message = f"got {shown_data(name)}, expected a {what}: {listed(known)}{guess(name, known)}"
-        raise ConfigError([source.at((what,)).problem(message)])
-
-
-def _check_localizer(source: Source) -> None:
-    default = str(ScenarioFile.model_fields["localizer"].default)
-    _check_known(source, "localizer", plugins.LOCALIZERS, _text(source, "localizer", default))
-
-
 def _backend(source: Source, name: str) -> BackendSpec:
-    _check_known(source, "backend", plugins.BACKENDS, name)
+    check_known(source.at(("backend",)), "backend", plugins.BACKENDS, name)
     return plugins.load(plugins.BACKENDS, name, BackendSpec)
 
 
@@ -270,7 +265,12 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
     return values
 
 
-def _check_tier(source: Source, tier: str, backend: BackendSpec) -> None:
-    if tier not in backend.tiers:
-        message = f'got "{tier}", expected a tier of {backend.name}: {listed(backend.tiers)}'
-        raise ConfigError([source.at(("tier",)).problem(message)])
+def _tier(source: Source, backend: BackendSpec) -> str | None:
+    """The tier that the file names, or else the backend's first; None where what it says is no name."""
+    said = source.data.get("tier") if isinstance(source.data, dict) else None
+    if said is None:
+        return backend.tiers[0]
+    if not isinstance(said, str):
+        return None  # told where the file as a whole is read
+    check_among(source.at(("tier",)), f"a tier of {backend.name}", said, backend.tiers)
+    return said

@@ -2,6 +2,14 @@
 
 from executive.testing.check_backend import check_backend
 from executive.testing.check_strategy import check_strategy
-from executive.testing.fake import BACKEND, FakeBackend, FakeWorld, OverheadLocalizer
+from executive.testing.fake import BACKEND, OVERHEAD, FakeBackend, FakeWorld, OverheadLocalizer
 
-__all__ = ["BACKEND", "FakeBackend", "FakeWorld", "OverheadLocalizer", "check_backend", "check_strategy"]
+__all__ = [
+    "BACKEND",
+    "OVERHEAD",
+    "FakeBackend",
+    "FakeWorld",
+    "OverheadLocalizer",
+    "check_backend",
+    "check_strategy",
+]

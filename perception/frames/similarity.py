@@ -36,7 +36,7 @@ class SimilarityLimits:
     """How far a frame may be from the sequence's mean; the last two in multiples of the pixel noise."""
 
     shift_px: float = 0.5
-    trembling_px: float = 4.5
+    vibration_px: float = 4.5
     gain: float = 0.10
     offset_noise: float = 12.0
     rest_noise: float = 2.0
@@ -82,7 +82,7 @@ def _settled(frames: Frames, noise_counts: float, limits: SimilarityLimits) -> S
     shift = coarse_shifts(frames, movable)
     found: Similarity | None = None
     for _ in range(_FINE_ROUNDS):
-        if not _VISIBLE_SHIFT_PX < np.abs(shift).max() <= limits.trembling_px:
+        if not _VISIBLE_SHIFT_PX < np.abs(shift).max() <= limits.vibration_px:
             return None
         moved = movable.moved_back(shift)
         inside = shown_by_all(moved.shape[1:], shift)

@@ -10,11 +10,11 @@ from executive.core.ports import Devices, Localizer
 from executive.core.rig import RigCalibration
 from executive.core.types import (
     Call,
+    CameraView,
     Images,
     Outcome,
     PoseEstimate,
     Segment,
-    View,
 )
 
 if TYPE_CHECKING:  # only named here, so that a tree can be read, checked and drawn without them
@@ -30,7 +30,7 @@ class Journal(Protocol):
     def waypoint(self, index: int, pose: PoseEstimate) -> None: ...
     def call(self, call: Call) -> None: ...
     def assessment(self, assessment: Assessment) -> None: ...
-    def views(self, views: tuple[View, ...], outcome: Outcome[object]) -> None: ...
+    def views(self, views: tuple[CameraView, ...], outcome: Outcome[object]) -> None: ...
     def picture(self, images: Images) -> None: ...
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from executive.core.ports import LocaliseRequest
-from executive.core.types import PoseEstimate, Quality, Source
+from executive.core.types import PoseEstimate, PoseSource, Quality
 from executive.testing import OverheadLocalizer
 from proving.faults.estimation import (
     Bias,
@@ -19,7 +19,7 @@ from proving.faults.estimation import (
 )
 from proving.faults.parameters import Nothing
 
-ANYWHERE = PoseEstimate(0.0, (3.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), Source.PRIOR)
+ANYWHERE = PoseEstimate(0.0, (3.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), PoseSource.PRIOR)
 
 
 @pytest.fixture
