@@ -103,6 +103,20 @@ def run(
 
 
 @cli.command()
+def prepare() -> int:
+    """Make what is made once on a machine, such as machine code; done already, it takes a second.
+
+    Example: longarm prepare
+    """
+    from executive.config.localizers import LocalizerSpec
+    from executive.core import plugins
+
+    for name in plugins.found(plugins.LOCALIZERS):
+        plugins.load(plugins.LOCALIZERS, name, LocalizerSpec).prepare(lambda line: click.echo(line, err=True))
+    return 0
+
+
+@cli.command()
 @click.argument("folder", type=FILE)
 def report(folder: Path) -> int:
     """Write the self-contained report.html of a run or campaign folder anew, from its record.

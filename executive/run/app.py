@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
@@ -72,6 +74,7 @@ def run(file: Path, options: RunOptions) -> Finished:
 def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     """The same for a scenario already resolved; of the options, those that change it are without effect."""
     strategies = load_strategies()
+    scenario.localizer.spec.prepare(partial(print, file=sys.stderr, flush=True) if options.bar else _silent)
     watch = Stopwatch()
     folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
@@ -92,6 +95,10 @@ def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     except Exception as defect:
         write_traceback(folder, defect)
         raise
+
+
+def _silent(line: str) -> None:
+    """Where nobody looks on."""
 
 
 def report(folder: Path) -> Path:

@@ -8,7 +8,9 @@ from typing import Any
 
 from executive.config.expect import LISTS
 from executive.config.file_kinds import file_kind, file_kinds
-from executive.config.models import MissionFile, ScenarioFile
+from executive.config.localizers import LocalizerSpec
+from executive.config.models import DEFAULT_LOCALIZER, MissionFile, ScenarioFile
+from executive.core import plugins
 from executive.core.values import VALUE_TYPES
 from executive.inject import schema as fault_schema
 from executive.tree.catalogue import NodeType, node_types
@@ -46,7 +48,23 @@ def _scenario() -> dict[str, Any]:
         several = {key: expect[name_of_list].pop(key) for key in ("type", "items")}
         expect[name_of_list]["anyOf"] = [several["items"], several]
     made["properties"]["faults"] = fault_schema.faults(made["$defs"])
+    made["properties"]["localizer"] = _localizer(made["$defs"])
     return made
+
+
+def _localizer(shared: dict[str, Any]) -> dict[str, Any]:
+    """A name, or a name with settings."""
+    specs = [
+        plugins.load(plugins.LOCALIZERS, name, LocalizerSpec) for name in plugins.found(plugins.LOCALIZERS)
+    ]
+    settings: dict[str, Any] = {}
+    for spec in specs:
+        own = spec.settings.model_json_schema(by_alias=True)
+        shared.update(own.pop("$defs", {}))
+        settings[spec.name] = {"anyOf": [own, {"type": "null"}], "description": spec.doc}
+    one = {"type": "object", "properties": settings, "additionalProperties": False}
+    names = {"enum": [spec.name for spec in specs]}
+    return {"anyOf": [names, one | {"minProperties": 1, "maxProperties": 1}], "default": DEFAULT_LOCALIZER}
 
 
 def _tree() -> dict[str, Any]:

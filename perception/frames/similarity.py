@@ -4,7 +4,7 @@ A frame that shows the same scene under slightly other light, from a head that q
     frame = mean - du * mean_u - dv * mean_v + gain * (mean - average) + offset + noise.
 The fit is taken out of the frame (it would leak background texture into the difference image) as long as
 it is small; a large one, or a large rest, means that the sequence does not show one scene. A head that
-trembles by pixels is no such case: its frames are brought onto one another first (frames.vibration).
+vibrates by pixels is no such case: its frames are brought onto one another first (frames.vibration).
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def compare(
 
 
 def _settled(frames: Frames, noise_counts: float, limits: SimilarityLimits) -> Similarity | None:
-    """The same for frames of a head that trembles by pixels; None if it does by too many, or not at all."""
+    """The same for frames of a head that vibrates by pixels; None if it does by too many, or not at all."""
     movable = Movable(frames)
     shift = coarse_shifts(frames, movable)
     found: Similarity | None = None

@@ -39,8 +39,9 @@ def _markers(rig: RigCalibration) -> int:
 
 
 def _preload() -> None:
-    from perception.localizer.machine_code import poses
+    from perception.localizer.machine_code import poses, prepare
 
+    prepare(lambda line: None)
     poses()
 
 

@@ -92,7 +92,7 @@ class JointScene:
         return [one for one in reached if self.searched(one)]
 
     def searched(self, one: Likely) -> bool:
-        """Whether a climb ended about where it was allowed to begin: of chance finds elsewhere the threshold
+        """Whether a climb ended about where it was allowed to begin: of false alarms elsewhere the threshold
         knows nothing."""
         reach = REGION_SIGMAS * max(self.widen, 1.0)
         return self.expectation.distance2(one.state.site_body) <= _PLACE_AND_HEADING * reach**2

@@ -30,7 +30,7 @@ def locate(bench):
         robot = bench.robot
         localizer = fault.wrap_localizer(OverheadLocalizer(robot.devices, robot.rig, robot.clock), bench.cue)
         request = LocaliseRequest(Quality.PRECISE, ANYWHERE)
-        return lambda: bench.finish(localizer.locate(request)).value
+        return lambda: bench.finish(localizer.locate(request)).value.pose
 
     return behind
 
