@@ -1,6 +1,6 @@
 """Does the first traverse still leave the same record, bit for bit? Seeds 0 to 4, both tiers.
 
-    python -m benchmarks.digests              # compares to benchmarks/digests.json; exit 1 if one differs
+    python -m benchmarks.digests              # compares with benchmarks/digests.json; exit 1 if one differs
     python -m benchmarks.digests --update     # writes what is found there, for a commit that says why
 
 One architecture and the locked versions give these digests; elsewhere last bits may differ. Some 3 minutes.

@@ -19,7 +19,7 @@ from executive.core.chance import generator
 from executive.core.clock import Stopwatch
 from executive.core.types import Array
 from executive.core.values import NUMBER
-from executive.judge.temporal import judge, on_one_grid, parse_formula
+from proving.judge.temporal import judge, on_one_grid, parse_formula
 
 FORMULAS = (
     "x > -2 until[0{u}{sep}{window}{u}] y > 2",

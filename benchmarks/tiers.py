@@ -24,7 +24,7 @@ from executive.core.types import (
     Quality,
     Segment,
 )
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc.attitude import quat_from_heading_tilt
 from perception.localizer.localizer import LedStereoLocalizer
 from sim_pybullet import BACKEND
 from sim_pybullet.backend import SimBackend

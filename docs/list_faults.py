@@ -9,8 +9,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from executive.inject.faults import CATEGORIES
-from executive.run.listing import entries
+from executive.run.catalogue import entries
+from executive.run.fault import CATEGORIES
 
 PAGE = Path(__file__).parent / "faults.md"
 

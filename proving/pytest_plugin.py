@@ -73,8 +73,8 @@ class ScenarioItem(pytest.Item):
 
     def runtest(self) -> None:
         from proving.engine.supervisor import run_alone
+        from proving.judge.verdict import Word
         from proving.suite.run import SuiteOptions, case_of, tested
-        from proving.verdict import Word
 
         option = self.config.getoption
         options = SuiteOptions(

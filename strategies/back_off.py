@@ -3,14 +3,13 @@
 from pathlib import Path
 
 from executive.core.types import Reason
-from executive.isc.hypotheses import Hypothesis
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 
 STRATEGY = Strategy(
     name="back_off",
     doc="Back off by 0.2 m, pass beside the path, and let the trek find its line again.",
     tree=Path(__file__).with_suffix(".yaml"),
-    answers={Hypothesis.STUCK_ON_OBSTACLE: 1.0, Hypothesis.TILT_RISK: 0.7, Hypothesis.SLIP_LONGITUDINAL: 0.3},
+    answers={"stuck_on_obstacle": 1.0, "tilt_risk": 0.7, "slip_longitudinal": 0.3},
     reasons={Reason.BLOCKED: 0.5, Reason.TILT: 0.4},
     cost_s=900.0,
     excursion_m=0.195,

@@ -3,14 +3,13 @@
 from pathlib import Path
 
 from executive.core.types import Reason
-from executive.isc.hypotheses import Hypothesis
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 
 STRATEGY = Strategy(
     name="wait_for_sight",
     doc="Wait at rest for the light, or the cameras, to recover, and measure again.",
     tree=Path(__file__).with_suffix(".yaml"),
-    answers={Hypothesis.ILLUMINATION_CHANGE: 1.0, Hypothesis.MARKER_LOST: 0.2, Hypothesis.LOST_ROVER: 0.2},
+    answers={"illumination_change": 1.0, "marker_lost": 0.2, "lost_rover": 0.2},
     reasons={
         Reason.NOT_SEEN: 0.2,
         Reason.UNSTABLE_IMAGES: 0.4,

@@ -9,8 +9,18 @@ from typing import Any
 
 import click
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import PluginError
+from executive.core.registry import Kind
+
+COMMAND_KIND: Kind[click.Command] = Kind(
+    "command",
+    "commands",
+    "A command of `longarm`.",
+    click.Command,
+    name_of=lambda command: None,  # campaign.run is called run
+    page=lambda command: {"doc": (command.help or "").split("\n\n")[0]},
+)
 
 
 class CommandGroup(click.Group):
@@ -28,16 +38,14 @@ class CommandGroup(click.Group):
         if own is not None or cmd_name not in self._registered():
             return own
         try:
-            command = plugins.load(plugins.COMMANDS, self._prefix + cmd_name, click.Command)
+            command = registry.get(COMMAND_KIND, self._prefix + cmd_name)
         except PluginError as error:
             return _broken(cmd_name, error)
-        return command if isinstance(command, click.Command) else None
+        return command
 
     def _registered(self) -> list[str]:
         names = [
-            n.removeprefix(self._prefix)
-            for n in plugins.found(plugins.COMMANDS)
-            if n.startswith(self._prefix)
+            n.removeprefix(self._prefix) for n in registry.names(COMMAND_KIND) if n.startswith(self._prefix)
         ]
         return [name for name in names if "." not in name]
 

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import click
 
-from executive.cli.command_group import CommandGroup
+from executive.cli.catalogue import CatalogueGroup
 from executive.core.errors import LongarmError
+from executive.core.registry import Project, in_project, project_file
 
 DEFECT = 3
 
@@ -25,7 +26,8 @@ def main() -> None:
 def invoke(arguments: list[str]) -> int:
     """Run the command line; the exit code."""
     try:
-        code = cli.main(args=arguments, prog_name="longarm", standalone_mode=False)
+        with in_project(_project(arguments)):
+            code = cli.main(args=arguments, prog_name="longarm", standalone_mode=False)
     except click.exceptions.Exit as error:
         return error.exit_code
     except click.exceptions.Abort:
@@ -45,6 +47,16 @@ def invoke(arguments: list[str]) -> int:
     return code if isinstance(code, int) else 0
 
 
+def _project(arguments: list[str]) -> Project | None:
+    """The project of the first file or folder that the command line names, else of the working folder."""
+    named = next((Path(a) for a in arguments if not a.startswith("-") and Path(a).exists()), Path.cwd())
+    if all(project_file(at) is None for at in (named, Path.cwd())):
+        return None  # without reading one there is nothing to import
+    from executive.config.project import project_for
+
+    return project_for(named)
+
+
 def _deepest(error: BaseException) -> str:
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
@@ -54,7 +66,7 @@ def _deepest(error: BaseException) -> str:
     return f"{Path(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno}"
 
 
-@click.group(cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=CatalogueGroup, context_settings={"help_option_names": ["-h", "--help"]})
 def cli() -> None:
     """Longarm: a rover led by its lander's stereo head, run by a behaviour tree.
 
@@ -90,7 +102,10 @@ def run(
     """
     from executive.cli import summary
     from executive.run import app
+    from executive.tree.strategies import broken_strategies
 
+    for broken in () if quiet else broken_strategies():
+        click.echo(f"longarm: the pool does without {broken}", err=True)
     finished = app.run(file, app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json)))
     if as_json:
         click.echo(json.dumps(finished.result, indent=2))
@@ -108,11 +123,11 @@ def prepare() -> int:
 
     Example: longarm prepare
     """
-    from executive.config.localizers import LocalizerSpec
-    from executive.core import plugins
+    from executive.config.localizers import LOCALIZER_KIND
+    from executive.core import registry
 
-    for name in plugins.found(plugins.LOCALIZERS):
-        plugins.load(plugins.LOCALIZERS, name, LocalizerSpec).prepare(lambda line: click.echo(line, err=True))
+    for spec in registry.every(LOCALIZER_KIND).values():
+        spec.prepare(lambda line: click.echo(line, err=True))
     return 0
 
 
@@ -221,41 +236,6 @@ def import_(file: Path, output: Path, force: bool) -> int:
     for note in imported.notes:
         click.echo(f"{note.file}:{note.line}:{note.column}: note: {note.message}", err=True)
     return 0
-
-
-def _catalogue(kind: str, example: str) -> None:
-    about = f"List the {kind}, or one of them in full.\n\nExample: longarm {kind} {example}"
-
-    @cli.command(kind, help=about)
-    @click.argument("name", required=False)
-    @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-    def command(name: str | None, as_json: bool) -> int:
-        from executive.config.validate import guess, listed
-        from executive.run import listing
-
-        entries = listing.entries(kind)
-        if name is not None and name not in entries:
-            known = sorted(entries)
-            raise click.UsageError(f'got "{name}", expected {listed(known) or "nothing"}{guess(name, known)}')
-        chosen = entries if name is None else {name: entries[name]}
-        if as_json:
-            click.echo(json.dumps(chosen, indent=2, ensure_ascii=False))
-        elif name is not None:
-            click.echo(listing.as_text(name, chosen[name]), nl=False)
-        else:
-            width = max((len(entry) for entry in chosen), default=0)
-            for entry, told in chosen.items():
-                click.echo(f"{entry:{width}}  {told.get('doc', '')}")
-        return 0
-
-
-for _kind, _example in (
-    ("nodes", "wait"),
-    ("strategies", "back_off"),
-    ("faults", "led_off"),
-    ("backends", "pybullet --json"),
-):
-    _catalogue(_kind, _example)
 
 
 @cli.command()

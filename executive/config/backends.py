@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +10,7 @@ from pydantic import BaseModel
 
 from executive.config.source import Place
 from executive.core.ports import Backend
+from executive.core.registry import Kind
 from executive.core.rig import RigCalibration
 from executive.core.types import Segment
 
@@ -63,3 +64,15 @@ class BackendSpec:
     create: Callable[[BackendRequest], Backend]
     problems: Callable[[BaseModel, tuple[Segment, ...]], tuple[WorldProblem, ...]] = no_problems
     preload: Callable[[], None] = nothing_to_load
+
+
+def _broken(spec: BackendSpec) -> Iterator[str]:
+    if not spec.doc.strip():
+        yield "it does not say what it is"
+    if not spec.tiers:
+        yield "it plays no tier"
+
+
+BACKEND_KIND: Kind[BackendSpec] = Kind(
+    "backend", "backends", "A robot, simulated or real.", BackendSpec, check=_broken
+)

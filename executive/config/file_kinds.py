@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from executive.config.source import Source
-from executive.core import plugins
+from executive.core import registry
+from executive.core.registry import Kind
 
 
 @dataclass(frozen=True)
@@ -19,11 +20,16 @@ class FileKind:
     schema: Callable[[], dict[str, Any]]
 
 
+FILE_KIND: Kind[FileKind] = Kind(
+    "file kind", "files", "A kind of file that check and schema know, by the key that names it.", FileKind
+)
+
+
 def file_kinds() -> tuple[str, ...]:
     """The names of all that are registered, none of them loaded."""
-    return tuple(sorted(plugins.found(plugins.FILES)))
+    return registry.names(FILE_KIND)
 
 
 def file_kind(name: str) -> FileKind:
     """One of them. PluginError when it cannot be loaded."""
-    return plugins.load(plugins.FILES, name, FileKind)
+    return registry.get(FILE_KIND, name)

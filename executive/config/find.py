@@ -2,43 +2,45 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import executive
 from executive.config.source import Mark
 from executive.config.validate import guess
 from executive.core.errors import ConfigError
+from executive.core.registry import current_project
 
 INSTALLED = Path(executive.__file__).parent.parent
 SUFFIXES = ("", ".yaml", ".yml")
+_MARKS = ("campaign", "scenario", "mission", "tree")
+"""The keys that name a file's kind; the first that it has says which it is."""
 
 
 def find(kind: str, reference: str, folder: Path, mark: Mark, working: Path | None = None) -> Path:
     """The file that `reference` names; ConfigError at `mark` when there is none.
 
-    `kind` is the folder of bare names: trees, missions, scenarios or campaigns, with all folders inside it;
-    those of the working folder come before the installed ones. Anything with a slash or a suffix is tried as
-    a path first.
+    A bare name is looked up beside the referring file, in the project's `paths`, in the folder `kind` (trees,
+    missions, scenarios or campaigns, with all folders inside it) of the working folder, and in the installed
+    one. Anything with a slash or a suffix is tried as a path first.
     """
-    working = working if working is not None else Path.cwd()
-    candidates = [folder / reference] if _is_path(reference) else []
-    if "/" not in reference:
-        folders = [inner for root in (working, INSTALLED) for inner in _folders(root / kind)]
-        candidates += [inner / f"{reference}{suffix}" for inner in folders for suffix in SUFFIXES]
     if not reference.isprintable() or not reference:
         raise ConfigError([mark.problem(f"got {reference!r}, expected the name of a file in {kind}/")])
-    for candidate in candidates:
-        if _is_file(candidate):
+    if _is_path(reference) and _is_file(folder / reference):
+        return (folder / reference).absolute()
+    if "/" not in reference:
+        for candidate in _candidates(kind, reference, folder, working):
             return candidate.absolute()
-    known = names(kind, working)
-    message = f'got "{reference}", expected a file or a name in {kind}/{guess(reference, known)}'
-    raise ConfigError([mark.problem(message)])
+    message = f'got "{reference}", expected a file or a name in {kind}/'
+    raise ConfigError([mark.problem(message + guess(reference, names(kind, working, folder)))])
 
 
-def names(kind: str, working: Path | None = None) -> list[str]:
-    """The bare names there are, sorted."""
-    roots = (working if working is not None else Path.cwd(), INSTALLED)
-    return sorted({path.stem for root in roots for path in (root / kind).rglob("*.y*ml")})
+def names(kind: str, working: Path | None = None, folder: Path | None = None) -> list[str]:
+    """The bare names there are, sorted; seen from a file in `folder`, where one is given."""
+    found = {path.stem for root in _roots(working) for path in (root / kind).rglob("*.y*ml")}
+    loose = [path for root in _loose(folder) for path in root.glob("*.y*ml") if _is_a(kind, path)]
+    return sorted(found | {path.stem for path in loose})
 
 
 def portable(kind: str, path: Path) -> str:
@@ -51,6 +53,42 @@ def shown(path: Path) -> str:
     """A path as messages show it: relative to the working folder where it lies inside."""
     working = Path.cwd()
     return str(path.relative_to(working)) if path.is_relative_to(working) else str(path)
+
+
+def _candidates(kind: str, name: str, folder: Path, working: Path | None) -> Iterator[Path]:
+    """The files of this name, the nearest first."""
+    for root in _loose(folder):
+        yield from (path for path in _named(root, name) if _is_a(kind, path))
+    for root in _roots(working):
+        for inner in _folders(root / kind):
+            yield from _named(inner, name)
+
+
+def _named(folder: Path, name: str) -> Iterator[Path]:
+    return (path for suffix in SUFFIXES if _is_file(path := folder / f"{name}{suffix}"))
+
+
+def _loose(folder: Path | None) -> list[Path]:
+    """Folders that hold files of any kind: that of the referring file, and the project's."""
+    project = current_project()
+    return [*([folder] if folder is not None else ()), *(project.paths if project is not None else ())]
+
+
+def _roots(working: Path | None) -> list[Path]:
+    """Folders that hold a folder of each kind."""
+    project = current_project()
+    paths = project.paths if project is not None else ()
+    return [*paths, working if working is not None else Path.cwd(), INSTALLED]
+
+
+def _is_a(kind: str, path: Path) -> bool:
+    """Whether a file is of this kind by its top-level keys; a scenario names a mission and a tree too."""
+    try:
+        text = path.read_text(errors="replace")
+    except OSError:
+        return False
+    keys = set(re.findall(rf"^[{{ ]?[\"']?({'|'.join(_MARKS)})[\"']?\s*:", text, re.MULTILINE))
+    return next((mark for mark in _MARKS if mark in keys), None) == kind.removesuffix("s")
 
 
 def _folders(root: Path) -> list[Path]:

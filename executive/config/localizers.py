@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BaseModel
 
-from executive.config.known import check_known
 from executive.config.models import DEFAULT_LOCALIZER
+from executive.config.registered import registered
 from executive.config.source import Mark, Place, Source
 from executive.config.validate import Strict, listed, parse, shown
-from executive.core import plugins
 from executive.core.clock import Clock
 from executive.core.errors import ConfigError
 from executive.core.ports import Devices, Localizer
+from executive.core.registry import Kind
 from executive.core.rig import RigCalibration
+from executive.core.types import PoseSource
 
 _PLACE = ("localizer",)
 
@@ -76,6 +77,21 @@ class LocalizerSpec:
     preload: Callable[[], None] = nothing_to_load
 
 
+def _broken(spec: LocalizerSpec) -> Iterator[str]:
+    if not spec.doc.strip():
+        yield "it does not say what it is"
+    if not spec.sources:
+        yield "it does not name the source of its fixes"
+    for source in spec.sources:
+        if source in tuple(PoseSource):
+            yield f"its fixes claim the source {source!r}, which is no fix"
+
+
+LOCALIZER_KIND: Kind[LocalizerSpec] = Kind(
+    "localizer", "localizers", "What finds the rover.", LocalizerSpec, check=_broken
+)
+
+
 @dataclass(frozen=True)
 class ChosenLocalizer:
     """A localizer with its settings, as a scenario names them."""
@@ -99,8 +115,7 @@ def localizer_from(source: Source, tier: str | None) -> ChosenLocalizer:
     A `tier` of None is not checked.
     """
     name, at, place = _named(source)
-    check_known(at, "localizer", plugins.LOCALIZERS, name)
-    spec = plugins.load(plugins.LOCALIZERS, name, LocalizerSpec)
+    spec = registered(LOCALIZER_KIND, name, at)
     if spec.tiers and tier is not None and tier not in spec.tiers:
         message = f"got {name} with the tier {tier}, in which it cannot work; expected {listed(spec.tiers)}"
         raise ConfigError([at.problem(message)])

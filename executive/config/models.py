@@ -7,12 +7,12 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from executive.config.expect import Expect, Name
 from executive.config.validate import Strict
 from executive.core.types import Point, Segment
 from executive.core.units import Duration, Length
 
 DEFAULT_LOCALIZER = "led_stereo"
+Name = Annotated[str, Field(min_length=1, max_length=100)]
 Margin = Annotated[Length, Field(gt=0)]
 
 
@@ -64,22 +64,23 @@ class MissionFile(Strict):
 
 
 class ScenarioFile(Strict):
-    """A mission, a world, a seed, faults, expectations. `localizer`, `world`, `rig` and `faults` are read
-    further on. Without a `tier`, the backend's first is meant.
+    """A mission, a world and a seed. `localizer`, `world` and `rig` are read further on; instruments own
+    further keys. Without a `tier`, the backend's first is meant.
 
-    `expected_to_fail` says why the expectations do not hold yet; the run's safety must, all the same.
+    `project` names the project file where it is not that beside the scenario or above it.
     """
 
     scenario: Name
     doc: str = ""
+    project: Annotated[str, Field(min_length=1)] | None = None
     mission: MissionFile
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     tier: Name | None = None
     backend: Name = "pybullet"
     localizer: Any = DEFAULT_LOCALIZER
+    policy: Annotated[
+        Name | None, Field(description="how the pool chooses among strategies (default first_fitted)")
+    ] = None
     world: dict[str, Any] = Field(default_factory=dict)
     rig: dict[str, Any] = Field(default_factory=dict)
-    faults: tuple[dict[str, Any], ...] = ()
-    expect: Expect = Expect()
-    expected_to_fail: Annotated[str, Field(min_length=1, max_length=500)] | None = None
     time_limit: Annotated[Duration, Field(gt=0)] = 24 * 3600.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -108,6 +108,16 @@ class Source:
                 {(0, *p): mark for p, mark in member.keys.items() if p},
                 {(0, *p): folder for p, folder in member.folders.items()},
             ),
+        )
+
+    def only(self, keys: Container[str]) -> Source:
+        """Of a mapping what stands under these keys, each in its place; an empty one where it is none."""
+        data = self.data if isinstance(self.data, dict) else {}
+        return Source(
+            {key: value for key, value in data.items() if key in keys},
+            {p: mark for p, mark in self.values.items() if not p or p[0] in keys},
+            {p: mark for p, mark in self.keys.items() if p[0] in keys},
+            {p: folder for p, folder in self.folders.items() if not p or p[0] in keys},
         )
 
 

@@ -47,10 +47,11 @@ class Problems:
             raise ConfigError(self.found)
 
 
-def parse(source: Source, model: type[M], at: Place = ()) -> M:
+def parse(source: Source, model: type[M], at: Place = (), beside: Sequence[str] = ()) -> M:
     """The value at `at` as a `model`, or ConfigError with every complaint.
 
-    The validation context is `{"folder": Path}`, where relative file names start from.
+    The validation context is `{"folder": Path}`, where relative file names start from. `beside` has keys that
+    others read: they are left alone.
     """
     problems = Problems(source.problems)
     data = source.get(at)
@@ -59,13 +60,14 @@ def parse(source: Source, model: type[M], at: Place = ()) -> M:
             source.at(at).problem(f"got {shown(data)}, expected a mapping with {_fields_text(model)}")
         )
         raise ConfigError(problems.found)
+    data = {key: value for key, value in data.items() if key not in beside}
     folder = {"folder": source.folder(at)}
     parsed = None
     try:
         parsed = model.model_validate_json(json.dumps(data), strict=True, context=folder)
     except ValidationError as error:
         for detail in error.errors(include_url=False, include_context=True):
-            problems.add(_problem(source, at, model, detail))
+            problems.add(_problem(source, at, model, detail, beside))
     problems.check()
     assert parsed is not None  # noqa: S101  (either parsed or a problem was found)
     return parsed
@@ -106,12 +108,15 @@ def _keys(model: type[BaseModel]) -> list[str]:
     return [field.alias or name for name, field in model.model_fields.items()]
 
 
-def _problem(source: Source, at: Place, model: type[BaseModel], detail: ErrorDetails) -> Problem:
+def _problem(
+    source: Source, at: Place, model: type[BaseModel], detail: ErrorDetails, beside: Sequence[str]
+) -> Problem:
     place, rest = _known_place(source, at, tuple(detail["loc"]))
     got, context = shown(detail["input"]), detail.get("ctx") or {}
     match detail["type"]:
         case "extra_forbidden":
-            known = _keys_at(model, place[len(at) : -1])
+            inner = place[len(at) : -1]
+            known = [*_keys_at(model, inner), *(beside if not inner else ())]
             message = f'got the unknown key "{place[-1]}", expected {listed(known)}{guess(place[-1], known)}'
             return source.key_at(place).problem(message)
         case "missing":

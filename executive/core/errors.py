@@ -32,7 +32,15 @@ class ConfigError(LongarmError):
 
 
 class PluginError(LongarmError):
-    """An entry point could not be loaded or does not keep its contract; names it."""
+    """A plug-in could not be loaded or does not keep its contract; names it and its source."""
+
+
+class Breach(AssertionError):
+    """A plug-in breaks promises of its kind: all of them, each a sentence. The checkers raise it."""
+
+    def __init__(self, subject: str, broken: Sequence[str]) -> None:
+        self.subject, self.broken = subject, tuple(broken)
+        super().__init__(f"{subject}: {'; '.join(broken)}")
 
 
 class RecordError(LongarmError):

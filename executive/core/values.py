@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import Enum
 from typing import Generic, TypeVar
 
+from executive.core.registry import Kind
 from executive.core.types import (
     Point,
     PoseEstimate,
@@ -43,22 +46,15 @@ POSE = ValueType("PoseEstimate", PoseEstimate, literal=False)
 SEGMENT = ValueType("Segment", Segment, literal=False)
 ROUTE: ValueType[tuple[Segment, ...]] = ValueType("Route", tuple, literal=False)
 
-VALUE_TYPES: dict[str, ValueType[object]] = {
-    t.name: t
-    for t in (
-        LENGTH,
-        ANGLE,
-        DURATION,
-        SPEED,
-        FORCE,
-        NUMBER,
-        INTEGER,
-        FLAG,
-        TEXT,
-        QUALITY,
-        POINT,
-        POSE,
-        SEGMENT,
-        ROUTE,
-    )
-}
+
+def _broken(kind: ValueType[object]) -> Iterator[str]:
+    plain = (float, int, bool, str)
+    if kind.literal and not (kind.python in plain or issubclass(kind.python, Enum)):
+        yield f"a {kind.python.__name__} has no literals: literal=False is missing"
+    if kind.unit is not None and kind.python is not float:
+        yield f"a {kind.python.__name__} has no unit, only a float has"
+
+
+VALUE_TYPE_KIND: Kind[ValueType[object]] = Kind(
+    "value type", "value_types", "What a port of a node or of a tree carries.", ValueType, check=_broken
+)

@@ -17,7 +17,8 @@ from executive.core.types import (
     Reason,
     Segment,
 )
-from executive.isc.prediction import MotionState, wrap_rad
+from executive.isc.attitude import wrap_rad
+from executive.isc.motion import MotionState
 
 
 @dataclass(frozen=True)

@@ -66,11 +66,12 @@ class Command:
 class HypothesesEvent:
     """Weights of the fault hypotheses, summing to 1, and what the likeliest leads to.
 
-    `severity_s` is the predicted time until a margin or limit is crossed [s], None if never.
+    `time_to_margin_s` is when, going on as then, the off-track margin is crossed [s]; None for never, and
+    where no segment was under way.
     """
 
     weights: dict[str, float]
-    severity_s: float | None = None
+    time_to_margin_s: float | None = None
 
 
 class Verdict(StrEnum):

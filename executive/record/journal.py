@@ -15,8 +15,8 @@ from executive.core.types import (
     PoseEstimate,
     Segment,
 )
-from executive.isc.classification import Assessment, Telemetry
-from executive.pool.pool import Attempt, Choice
+from executive.isc import Assessment, Sensed
+from executive.pool import Attempt, Choice
 from executive.record import events
 from executive.record.pictures import annotated, picture
 from executive.record.recorder import Recorder
@@ -67,8 +67,7 @@ class RunJournal:
         self.write(call)
 
     def assessment(self, assessment: Assessment) -> None:
-        weights = {str(h): w for h, w in assessment.weights.items()}
-        self.write(events.HypothesesEvent(weights, assessment.time_to_margin_s))
+        self.write(events.HypothesesEvent(dict(assessment.weights), assessment.time_to_margin_s))
 
     def views(self, views: tuple[CameraView, ...], outcome: Outcome[object]) -> None:
         """Keep every fifth look, and each that failed."""
@@ -102,7 +101,7 @@ class RunJournal:
         verdict = events.Verdict.HELPED if note.helped else events.Verdict.FAILED
         self.write(self._strategy_event(note.strategy, note.hypothesis, note.weight, verdict, ""))
 
-    def telemetry(self, now: Telemetry, devices: Devices, predicted: PoseEstimate) -> None:
+    def telemetry(self, now: Sensed, devices: Devices, predicted: PoseEstimate) -> None:
         """One sample of all that is read continuously, and of where the rover should be by it."""
         if now.tracks.moving:
             self.write(predicted.on(self._segment))
@@ -133,6 +132,10 @@ class RunJournal:
         along = self._segment.offset(self._pose.x_m, self._pose.y_m).along_m
         return behind + min(max(along, 0.0), self._segment.length_m)
 
+    def progress(self) -> float:
+        """The share of the route that lies behind the rover, 0 to 1."""
+        return self.along_route_m() / sum(s.length_m for s in self._route)
+
     def to_go_text(self) -> str:
         """What remains, for people."""
         remaining = sum(s.length_m for s in self._route) - self.along_route_m()
@@ -154,4 +157,4 @@ class RunJournal:
     def _strategy_event(
         self, name: str, hypothesis: str, weight: float, verdict: events.Verdict, why: str
     ) -> events.StrategyEvent:
-        return events.StrategyEvent(name, str(hypothesis), weight, self._attempts[name], verdict, why)
+        return events.StrategyEvent(name, hypothesis, weight, self._attempts[name], verdict, why)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from executive.core.types import PoseEstimate
@@ -20,7 +21,7 @@ from executive.core.values import (
     NUMBER,
     ValueType,
 )
-from executive.isc.hypotheses import Hypothesis
+from executive.isc import hypothesis_names
 from executive.record.events import (
     HypothesesEvent,
     Telemetry,
@@ -71,7 +72,7 @@ def _truth(kind: ValueType[Any], read: Callable[[TruthEvent], float], doc: str) 
     return Signal(kind, TruthEvent, read, doc, truth=True)
 
 
-SIGNALS: Mapping[str, Signal] = {
+_READ: Mapping[str, Signal] = {
     "tilt": Signal(ANGLE, Telemetry, lambda e: tilt_rad(e.roll_rad, e.pitch_rad), "by the inclinometers"),
     "roll": _field("roll_rad", ANGLE, "about the body's x axis"),
     "pitch": _field("pitch_rad", ANGLE, "about the body's y axis"),
@@ -96,7 +97,8 @@ SIGNALS: Mapping[str, Signal] = {
     "remaining": _pose(LENGTH, lambda e: e.track.remaining_m if e.track else None, "to the way-point"),
     "markers": _pose(INTEGER, lambda e: e.markers or None, "seen in the last fix"),
     "waypoint": Signal(INTEGER, WaypointEvent, lambda e: e.index, "the last one declared reached"),
-    **{str(h): _weight(str(h)) for h in Hypothesis},
+}
+_TRUE: Mapping[str, Signal] = {
     "true_x": _truth(LENGTH, lambda e: e.position_site_m[0], "true position in site"),
     "true_y": _truth(LENGTH, lambda e: e.position_site_m[1], "true position in site"),
     "true_tilt": _truth(ANGLE, _true_tilt, "true tilt"),
@@ -105,17 +107,36 @@ SIGNALS: Mapping[str, Signal] = {
     "slip_right": _truth(NUMBER, lambda e: e.slip_right, "true slip of the right track"),
 }
 
-TYPES: Mapping[str, ValueType[Any]] = {name: signal.kind for name, signal in SIGNALS.items()}
-LIVE_TYPES: Mapping[str, ValueType[Any]] = {n: s.kind for n, s in SIGNALS.items() if not s.truth}
+
+def signals() -> Mapping[str, Signal]:
+    """All there are by name: of the robot, the weight of each registered hypothesis, and of the truth."""
+    return _signals(hypothesis_names())
+
+
+def types() -> Mapping[str, ValueType[Any]]:
+    """What an expectation may speak of."""
+    return {name: signal.kind for name, signal in signals().items()}
+
+
+def live_types() -> Mapping[str, ValueType[Any]]:
+    """What a trigger may speak of, while the run is under way."""
+    return {name: signal.kind for name, signal in signals().items() if not signal.truth}
+
+
+@cache
+def _signals(hypotheses: tuple[str, ...]) -> Mapping[str, Signal]:
+    return {**_READ, **{name: _weight(name) for name in hypotheses}, **_TRUE}
 
 
 _OF_EVENT: dict[type, list[tuple[str, Signal]]] = {}
-for _name, _signal in SIGNALS.items():
+for _name, _signal in {**_READ, **_TRUE}.items():
     _OF_EVENT.setdefault(_signal.event, []).append((_name, _signal))
 
 
 def heard(event: object) -> Iterator[tuple[str, float]]:
     """The signals that an event gives a value."""
+    if isinstance(event, HypothesesEvent):
+        yield from event.weights.items()
     for name, signal in _OF_EVENT.get(type(event), ()):
         if (value := signal.read(event)) is not None:
             yield name, value

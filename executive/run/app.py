@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from executive.config.backends import BackendRequest
-from executive.config.expect import Expect
-from executive.core import plugins
+from executive.core import registry
 from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
-from executive.judge.expectations import judge
-from executive.judge.safety import safety_rows
-from executive.pool.pool import Strategy
-from executive.record import History, digest, events
+from executive.core.registry import in_project
+from executive.pool import Strategy
+from executive.record import History, events
 from executive.record.recorder import Recorder
-from executive.record.result import RunFigures, summary_of, write_result
+from executive.record.result import RunFigures, write_result
 from executive.record.run_folder import (
     RUN_FILES,
     free_folder,
@@ -30,14 +28,15 @@ from executive.record.run_folder import (
     write_traceback,
 )
 from executive.report import write_report
+from executive.report.reporter import REPORTER_KIND
 from executive.report.show import draw
 from executive.run.assembly import TICK_S, set_up, write_start
+from executive.run.judging import exit_code, judged
 from executive.run.progress import progress_bar
+from executive.run.resolve import resolve_scenario
+from executive.run.resolved import ResolvedScenario
 from executive.run.runner import RunEnd, ended_by, execute
-from executive.run.scenario import ResolvedScenario, resolve_scenario
 from executive.tree.strategies import load_strategies, strategy_trees
-
-REACHED, OTHERWISE, DEFECT = 0, 1, 3
 
 
 @dataclass(frozen=True)
@@ -73,6 +72,11 @@ def run(file: Path, options: RunOptions) -> Finished:
 
 def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     """The same for a scenario already resolved; of the options, those that change it are without effect."""
+    with in_project(scenario.project):
+        return _run(scenario, options)
+
+
+def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     strategies = load_strategies()
     scenario.localizer.spec.prepare(partial(print, file=sys.stderr, flush=True) if options.bar else _silent)
     watch = Stopwatch()
@@ -103,10 +107,9 @@ def _silent(line: str) -> None:
 
 def report(folder: Path) -> Path:
     """(Re)write the report of a run or campaign folder from its record; RecordError where there is none."""
-    for name in plugins.found(plugins.REPORTERS):
+    for name in registry.names(REPORTER_KIND):
         if (folder / f"{name}.json").is_file():
-            reporter = cast("Callable[[Path], Path]", plugins.load(plugins.REPORTERS, name))
-            return reporter(folder)
+            return registry.get(REPORTER_KIND, name).write(folder)
     if not (folder / "record.mcap").is_file():
         raise RecordError(f"{folder}: got no record.mcap, expected a run or campaign folder")
     return write_report(folder, _tree_svg(folder))
@@ -155,22 +158,12 @@ def _conclude(
         wall={part: round(spent, 3) for part, spent in sorted(watch.spent_s.items())},
         waypoints_total=len(scenario.mission.waypoints),
     )
-    result = judged(scenario, folder, figures)
+    result, met = judged(scenario, folder, figures)
     write_result(folder / "result.json", result)
     if with_report:
         write_report(folder, _tree_svg(folder))
     kept = json.loads((folder / "result.json").read_text())
-    return Finished(folder, kept, _exit_code(scenario.expect, result), end.defect)
-
-
-def judged(scenario: ResolvedScenario, folder: Path, figures: RunFigures) -> dict[str, Any]:
-    """The content of `result.json` from the records of a run, complete or cut off."""
-    record, truth = folder / "record.mcap", folder / "truth.mcap"
-    history, world = History.of(record), History.of(truth) if truth.is_file() else History.empty()
-    result = summary_of(history, world, digest(record), figures)
-    result["expectations"] = judge(scenario.expect, result, history, world)
-    result["safety"] = safety_rows(history, world, scenario.rig)
-    return result
+    return Finished(folder, kept, exit_code(result["outcome"], met), end.defect)
 
 
 def _tree_svg(folder: Path) -> str | None:
@@ -187,21 +180,11 @@ def draw_run(folder: Path, form: str) -> str | bytes:
     if not (folder / "scenario.yaml").is_file():
         raise RecordError(f"{folder}: got no scenario.yaml, expected a run folder")
     scenario = resolve_scenario(folder / "scenario.yaml")
-    return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
+    with in_project(scenario.project):
+        return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
 
 
 def last_outcomes(folder: Path) -> dict[str, str]:
     """The status with which each node last ended, by path."""
     changes = History.of(folder / "record.mcap").all(events.NodeChange)
     return {at.event.path: at.event.status for at in changes if at.event.status != "invalid"}
-
-
-def _exit_code(expect: Expect, result: Mapping[str, Any]) -> int:
-    """A scenario's expectations decide, and its safety; without any, whether the goal was reached."""
-    outcome, rows = result["outcome"], result["expectations"]
-    as_expected = all(row["met"] for row in rows) and all(row["met"] is not False for row in result["safety"])
-    if outcome == "error" and not (as_expected and outcome in expect.outcome):
-        return DEFECT
-    if outcome == "invalid" or not rows:
-        return REACHED if outcome == "reached" else OTHERWISE
-    return REACHED if as_expected else OTHERWISE

@@ -1,4 +1,4 @@
-"""A run put together: robot, faults, localizer, classification, pool and tree."""
+"""A run put together: robot, instruments, localizer, classification, pool and tree."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from executive.core.types import (
     Reason,
     Segment,
 )
-from executive.inject.faults import TreeParts
-from executive.inject.schedule import FaultSchedule
-from executive.isc.classification import Classification
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc import Classification, known_channels, known_hypotheses
+from executive.isc.attitude import quat_from_heading_tilt
 from executive.navigation.belt_rest import RestingTracks
-from executive.pool.pool import Pool, Strategy
+from executive.pool import Pool, Strategy, known_policy
 from executive.record import events
 from executive.record.command_log import logged
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.record.versions import versions
+from executive.run.instrument import Context, Instrument, TreeParts
+from executive.run.instruments import Together, instruments_there_are
+from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run
-from executive.run.scenario import ResolvedScenario
 from executive.tree.build import build
 from executive.tree.nodes.services import Services
 from executive.tree.strategies import strategy_trees
@@ -83,10 +83,10 @@ def _prepare(
 ) -> Run:
     route = scenario.mission.route()
     journal = RunJournal(recorder, backend.clock, route)
-    faults = FaultSchedule(scenario.faults, backend, scenario.seed)
-    journal.hear = faults.sightings.hear
-    strategies = faults.wrap_pool(strategies)
-    devices = logged(faults.wrap(backend.devices), journal.write)
+    instruments = _instruments(scenario, backend, journal)
+    journal.hear = instruments.hear
+    strategies = instruments.wrap_pool(strategies)
+    devices = logged(instruments.wrap_devices(backend.devices), journal.write)
     belts = RestingTracks(devices.tracks)
     devices = replace(devices, tracks=belts)
     localizer = scenario.localizer.made(devices, backend.rig, backend.clock, scenario.seed, scenario.tier)
@@ -94,19 +94,27 @@ def _prepare(
         clock=backend.clock,
         devices=devices,
         rig=backend.rig,
-        localizer=faults.wrap_localizer(localizer),
-        classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
-        pool=Pool(strategies, journal.strategy),
+        localizer=instruments.wrap_localizer(localizer),
+        classification=Classification(
+            prior_pose(route[0]),
+            backend.rig,
+            backend.clock,
+            known_hypotheses(),
+            known_channels(),
+            announce=journal.assessment,
+            markers_expected=scenario.localizer.spec.expected_markers(backend.rig),
+        ),
+        pool=Pool(strategies, journal.strategy, known_policy(scenario.policy)),
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
     built = build(scenario.tree, services, inputs, strategy_trees(strategies, scenario.instead))
-    faults.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
+    instruments.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
 
     def each_tick() -> None:
-        faults.tick(journal, route)
-        telemetry = services.classification.telemetry
-        problem = belts.astray(telemetry.tracks) if telemetry else None
+        instruments.tick(backend.clock.now_s)
+        sensed = services.classification.tracker.sensed
+        problem = belts.astray(sensed.tracks) if sensed else None
         if problem is not None:
             built.trace.alarm = Outcome(Reason.DEVICE, problem)
 
@@ -121,5 +129,11 @@ def _prepare(
         stopwatch=watch,
         time_limit_s=scenario.time_limit_s,
         each_tick=each_tick,
-        invalid=lambda: faults.conclude(journal),
+        invalid=instruments.conclude,
     )
+
+
+def _instruments(scenario: ResolvedScenario, backend: Backend, journal: RunJournal) -> Instrument:
+    """What takes part in this run, as one."""
+    context = Context(backend, scenario.seed, journal.write, journal.progress)
+    return Together([spec.make(scenario.of(spec), context) for spec in instruments_there_are()])

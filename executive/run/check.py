@@ -9,10 +9,12 @@ from typing import Any
 
 from executive.config.file_kinds import file_kind, file_kinds
 from executive.config.find import shown
+from executive.config.project import project_for, read_project
 from executive.config.source import read
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
-from executive.run.scenario import as_scenario, resolve
+from executive.core.registry import PROJECT_FILE, in_project
+from executive.run.resolve import as_scenario, resolve
 from executive.tree.load import load_tree
 
 OWN = ("tree", "mission", "scenario")
@@ -21,22 +23,30 @@ OWN = ("tree", "mission", "scenario")
 def check_file(path: Path) -> tuple[Problem, ...]:
     """Every problem of one file; none is an empty tuple."""
     try:
-        source = read(path, shown(path))
-        kind = kind_of(source.data)
-        if kind is None:
-            keys = [str(key) for key in source.data] if isinstance(source.data, dict) else []
-            known = (*file_kinds(), *OWN)
-            near = next((text for key in keys if (text := guess(key, known))), "")
-            message = f"got a file of no known kind, expected one of the keys {listed(known)}{near}"
-            return tuple(sorted({*source.problems, source.at(()).problem(message)}))
-        if kind == "tree":
-            load_tree(path)
-        elif kind in file_kinds():
-            file_kind(kind).check(source)
-        else:
-            resolve(as_scenario(source))
+        if path.name == PROJECT_FILE:
+            read_project(path)
+            return ()
+        with in_project(project_for(path)):
+            return _problems(path)
     except ConfigError as error:
         return error.problems
+
+
+def _problems(path: Path) -> tuple[Problem, ...]:
+    source = read(path, shown(path))
+    kind = kind_of(source.data)
+    if kind is None:
+        keys = [str(key) for key in source.data] if isinstance(source.data, dict) else []
+        known = (*file_kinds(), *OWN)
+        near = next((text for key in keys if (text := guess(key, known))), "")
+        message = f"got a file of no known kind, expected one of the keys {listed(known)}{near}"
+        return tuple(sorted({*source.problems, source.at(()).problem(message)}))
+    if kind == "tree":
+        load_tree(path)
+    elif kind in file_kinds():
+        file_kind(kind).check(source)
+    else:
+        resolve(as_scenario(source))
     return ()
 
 

@@ -81,7 +81,7 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
     sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
     while True:
         with watch.measure("tick"):
-            now = run.services.classification.sense(run.services.devices)
+            now = run.services.classification.tracker.sense(run.services.devices)
         run.each_tick()
         with watch.measure("tick"):
             run.root.tick_once()
@@ -154,7 +154,7 @@ def _see_it_rest(run: Run) -> None:
     while run.services.devices.tracks.read().moving and run.services.clock.now_s < by_s:
         run.backend.advance()
     run.backend.advance()
-    now = run.services.classification.sense(run.services.devices)
+    now = run.services.classification.tracker.sense(run.services.devices)
     run.journal.telemetry(now, run.services.devices, run.services.classification.predicted())
 
 

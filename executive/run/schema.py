@@ -6,19 +6,19 @@ import copy
 from enum import Enum
 from typing import Any
 
-from executive.config.expect import LISTS
 from executive.config.file_kinds import file_kind, file_kinds
-from executive.config.localizers import LocalizerSpec
+from executive.config.localizers import LOCALIZER_KIND
 from executive.config.models import DEFAULT_LOCALIZER, MissionFile, ScenarioFile
-from executive.core import plugins
-from executive.core.values import VALUE_TYPES
-from executive.inject import schema as fault_schema
+from executive.config.project import ProjectFile
+from executive.core import registry
+from executive.core.values import VALUE_TYPE_KIND
+from executive.run.instruments import instruments_there_are
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.file import TreeFile
 from executive.tree.nodes.base import REQUIRED, Direction, PortSpec
 from executive.tree.spec import GUARDS
 
-_OWN = ("tree", "mission", "scenario")
+_OWN = ("tree", "mission", "scenario", "project")
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
@@ -29,9 +29,13 @@ def kinds() -> tuple[str, ...]:
 
 def schema(kind: str) -> dict[str, Any]:
     """The schema of one kind of file. PluginError when the plug-in that reads it cannot be loaded."""
-    own = {"tree": _tree, "mission": _mission, "scenario": _scenario}
+    own = {"tree": _tree, "mission": _mission, "scenario": _scenario, "project": _project}
     made = own[kind]() if kind in own else file_kind(kind).schema()
     return {"$schema": DIALECT, "title": f"Longarm {kind}"} | made
+
+
+def _project() -> dict[str, Any]:
+    return ProjectFile.model_json_schema(by_alias=True)
 
 
 def _mission() -> dict[str, Any]:
@@ -43,27 +47,22 @@ def _scenario() -> dict[str, Any]:
     inline = copy.deepcopy(made["properties"]["mission"])
     name = {"type": "string", "description": "a mission file: a path or a bare name"}
     made["properties"]["mission"] = {"anyOf": [name, inline]}
-    expect = made["$defs"]["Expect"]["properties"]
-    for name_of_list in LISTS:
-        several = {key: expect[name_of_list].pop(key) for key in ("type", "items")}
-        expect[name_of_list]["anyOf"] = [several["items"], several]
-    made["properties"]["faults"] = fault_schema.faults(made["$defs"])
     made["properties"]["localizer"] = _localizer(made["$defs"])
+    for spec in instruments_there_are():
+        made["properties"] |= spec.schema(made["$defs"])
     return made
 
 
 def _localizer(shared: dict[str, Any]) -> dict[str, Any]:
     """A name, or a name with settings."""
-    specs = [
-        plugins.load(plugins.LOCALIZERS, name, LocalizerSpec) for name in plugins.found(plugins.LOCALIZERS)
-    ]
+    specs = registry.every(LOCALIZER_KIND)
     settings: dict[str, Any] = {}
-    for spec in specs:
+    for name, spec in specs.items():
         own = spec.settings.model_json_schema(by_alias=True)
         shared.update(own.pop("$defs", {}))
-        settings[spec.name] = {"anyOf": [own, {"type": "null"}], "description": spec.doc}
+        settings[name] = {"anyOf": [own, {"type": "null"}], "description": spec.doc}
     one = {"type": "object", "properties": settings, "additionalProperties": False}
-    names = {"enum": [spec.name for spec in specs]}
+    names = {"enum": list(specs)}
     return {"anyOf": [names, one | {"minProperties": 1, "maxProperties": 1}], "default": DEFAULT_LOCALIZER}
 
 
@@ -72,7 +71,7 @@ def _tree() -> dict[str, Any]:
     made["properties"]["root"] = {"$ref": "#/$defs/node"}
     made["$defs"] = made.get("$defs", {}) | {"node": _node()}
     declaration = made["$defs"]["PortDeclaration"]
-    declaration["properties"]["type"] = {"enum": list(VALUE_TYPES)}
+    declaration["properties"]["type"] = {"enum": list(registry.names(VALUE_TYPE_KIND))}
     return made
 
 

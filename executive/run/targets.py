@@ -2,63 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Set
 
-from executive.config.expect import LISTS_OF_STEPS
 from executive.config.source import Place, Source
 from executive.config.validate import guess
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import Problem
-from executive.inject.entries import ResolvedFault
+from executive.pool.kind import STRATEGY_KIND
 from executive.tree.addresses import means
 from executive.tree.spec import TreeSpec, walk
 from executive.tree.strategies import load_strategies, strategy_trees
 
 Named = tuple[Place, str]
+"""A name that a file gives, and where."""
 
 
-def target_problems(source: Source, faults: Sequence[ResolvedFault], tree: TreeSpec) -> list[Problem]:
-    """Faults and expectations of a node, a value or a strategy that is not there: they could never come."""
-    absent = f"{{}}, which the tree {tree.name} does not have"
-    known = set(plugins.found(plugins.STRATEGIES))
-    return [
-        *_strange_nodes(source, [*_nodes_of(faults), *_steps(source)], tree),
-        *_strangers(source, _parameters(faults, "value"), _value_names(tree), f"the value {absent}"),
-        *_strangers(source, _parameters(faults, "strategy"), known, "the unknown strategy {}"),
-    ]
-
-
-def _nodes_of(faults: Sequence[ResolvedFault]) -> Iterator[Named]:
-    for i, fault in enumerate(faults):
-        if fault.start.node is not None:
-            yield ("faults", i, "from", "node"), fault.start.node
-    yield from _parameters(faults, "node")
-
-
-def _parameters(faults: Sequence[ResolvedFault], kind: str) -> Iterator[Named]:
-    """The parameters of faults that name something of a tree."""
-    for i, fault in enumerate(faults):
-        parameter = getattr(fault.spec, kind)
-        value = getattr(fault.parameters, parameter) if parameter else None
-        if value is not None:
-            yield ("faults", i, fault.spec.name, parameter), value
-
-
-def _steps(source: Source) -> Iterator[Named]:
-    """The nodes that `expect` speaks of."""
-    for key in LISTS_OF_STEPS:
-        place: Place = ("expect", key)
-        members = source.get(place) if place in source.values else None
-        for index, member in enumerate(members if isinstance(members, list) else ()):
-            at: Place = (*place, index)
-            if isinstance(member, dict) and isinstance(member.get("of"), dict):
-                at, member = (*at, "of"), member["of"]
-            if isinstance(member, dict):
-                yield from (((*at, name), str(name)) for name in member)
-
-
-def _strange_nodes(source: Source, named: Sequence[Named], tree: TreeSpec) -> Iterator[Problem]:
+def strange_nodes(source: Source, named: Iterable[Named], tree: TreeSpec) -> Iterator[Problem]:
     """Addresses that mean no node of the tree, nor of a strategy where it may be tried."""
+    named = tuple(named)
     paths = tuple(_node_paths(tree)) if named else ()
     names = sorted({path.rsplit("/", 1)[-1] for path in paths})
     for place, address in named:
@@ -66,6 +27,17 @@ def _strange_nodes(source: Source, named: Sequence[Named], tree: TreeSpec) -> It
             last = address.rsplit("/", 1)[-1]
             text = f'got the node "{address}", which the tree {tree.name} does not have'
             yield source.at(place).problem(text + ("" if last in names else guess(last, names)))
+
+
+def strange_values(source: Source, named: Iterable[Named], tree: TreeSpec) -> Iterator[Problem]:
+    """Names of no value of the tree, its sub-trees and the strategies."""
+    absent = f"the value {{}}, which the tree {tree.name} does not have"
+    return _strangers(source, named, _value_names(tree), absent)
+
+
+def strange_strategies(source: Source, named: Iterable[Named]) -> Iterator[Problem]:
+    """Names of no installed strategy."""
+    return _strangers(source, named, set(registry.names(STRATEGY_KIND)), "the unknown strategy {}")
 
 
 def _node_paths(tree: TreeSpec) -> Iterator[str]:
@@ -85,7 +57,7 @@ def _value_names(tree: TreeSpec) -> set[str]:
     return {name for each in (*trees, *inner) for name in each.values}
 
 
-def _strangers(source: Source, named: Iterator[Named], known: Set[str], got: str) -> Iterator[Problem]:
+def _strangers(source: Source, named: Iterable[Named], known: Set[str], got: str) -> Iterator[Problem]:
     for place, name in named:
         if name not in known:
             yield source.at(place).problem("got " + got.format(f'"{name}"') + guess(name, sorted(known)))

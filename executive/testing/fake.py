@@ -37,7 +37,7 @@ from executive.core.types import (
     TrackReading,
     Vec2,
 )
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc.attitude import quat_from_heading_tilt
 
 T = TypeVar("T")
 PIXELS_PER_M = 1000.0
@@ -202,8 +202,8 @@ class FakeCameras:
         c, s = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
         plan = np.array([(x, y) for x, y, _ in robot.rig.markers.positions_plc_m])
         seen = plan @ np.array([[c, s], [-s, c]]) + (robot.x_m, robot.y_m)
-        noise = robot.rng.normal(0.0, robot.world.pixel_sigma, (2, 4, 2))
-        sigma = np.full((2, 4), max(robot.world.pixel_sigma, 1e-3))
+        noise = robot.rng.normal(0.0, robot.world.pixel_sigma, (2, len(plan), 2))
+        sigma = np.full((2, len(plan)), max(robot.world.pixel_sigma, 1e-3))
         return Centres(robot.clock.now_s, shot, PIXELS_PER_M * seen + noise, sigma, FakeHead(robot).read())
 
 

@@ -14,7 +14,7 @@ from executive.core.attributes import read_attribute
 from executive.core.errors import ConfigError
 from executive.core.types import Outcome
 from executive.core.values import SEGMENT, ValueType
-from executive.tree.nodes import LEAVES, situation
+from executive.tree.nodes import situation
 from executive.tree.nodes.base import (
     REQUIRED,
     Binding,
@@ -28,6 +28,7 @@ from executive.tree.nodes.base import (
     Trace,
 )
 from executive.tree.nodes.decorators import ForEach, Guarded, Timeout
+from executive.tree.nodes.kind import Leaves, leaves
 from executive.tree.nodes.loop import Loop
 from executive.tree.nodes.recover import Recover
 from executive.tree.nodes.services import Services
@@ -113,13 +114,13 @@ def build(
     services: Services,
     inputs: Mapping[str, object] | None = None,
     strategies: Mapping[str, TreeSpec] | None = None,
-    leaves: Mapping[str, type[Leaf]] = LEAVES,
+    own: Leaves | None = None,
 ) -> BuiltTree:
     """Make the behaviours. `inputs` gives the root tree's ports; `strategies` what `recover` chooses from.
 
     ConfigError when a required input is missing or an unknown one is given.
     """
-    builder = _Builder(services, dict(strategies or {}), leaves)
+    builder = _Builder(services, dict(strategies or {}), leaves() if own is None else own)
     scope = Scope(builder.store, spec.name, spec.values)
     _set_inputs(spec, scope, dict(inputs or {}))
     path, root = root_of(spec.name, spec)

@@ -15,13 +15,13 @@ from executive.core.values import (
     TEXT,
     ValueType,
 )
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import (
     REQUIRED,
     Direction,
     Leaf,
     PortSpec,
 )
+from executive.tree.nodes.kind import Leaves, leaves
 
 
 @dataclass(frozen=True)
@@ -141,6 +141,6 @@ def of_leaf(name: str, leaf: type[Leaf]) -> NodeType:
     return NodeType(name, "leaf", " ".join(doc.split()), leaf.ports())
 
 
-def node_types(leaves: Mapping[str, type[Leaf]] = LEAVES) -> dict[str, NodeType]:
+def node_types(own: Leaves | None = None) -> dict[str, NodeType]:
     """Everything a tree file can use without another file."""
-    return BUILTINS | {name: of_leaf(name, leaf) for name, leaf in leaves.items()}
+    return BUILTINS | {name: of_leaf(name, leaf) for name, leaf in (leaves() if own is None else own).items()}

@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from executive.config.registered import registered
 from executive.config.source import Source
-from executive.config.validate import Problems, Strict, guess, listed
-from executive.core.errors import ConfigError
-from executive.core.values import VALUE_TYPES
+from executive.config.validate import Problems, Strict
+from executive.core.values import VALUE_TYPE_KIND
 from executive.tree.literals import literal
 from executive.tree.nodes.base import (
     REQUIRED,
@@ -49,11 +49,7 @@ def declared_ports(source: Source, file: TreeFile) -> tuple[PortSpec, ...]:
 
 def _port(source: Source, name: str, declared: PortDeclaration) -> PortSpec:
     place = ("ports", name)
-    if declared.type not in VALUE_TYPES:
-        known = list(VALUE_TYPES)
-        message = f'got the unknown type "{declared.type}", expected {listed(known)}'
-        raise ConfigError([source.at((*place, "type")).problem(message + guess(declared.type, known))])
-    kind = VALUE_TYPES[declared.type]
+    kind = registered(VALUE_TYPE_KIND, declared.type, source.at((*place, "type")))
     default: object = REQUIRED if declared.direction == "in" else None
     if declared.default == f"{{{name}}}":
         default = FromTree(name)

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from executive.config.find import find, names, shown
+from executive.config.registered import not_loaded
 from executive.config.source import Mark, Place, Source, read, read_text
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
+from executive.core import registry
 from executive.core.errors import ConfigError, Problem
 from executive.tree.catalogue import ITEMS, NodeType, node_types
 from executive.tree.expressions.guards import parse_guard
@@ -18,13 +20,12 @@ from executive.tree.expressions.typed import GuardError
 from executive.tree.file import TreeFile, declared_ports
 from executive.tree.flow import Flow
 from executive.tree.literals import port_value
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import (
     REQUIRED,
     Direction,
-    Leaf,
     PortSpec,
 )
+from executive.tree.nodes.kind import LEAF_KIND, Leaves
 from executive.tree.spec import GUARDS, Literal, NodeSpec, PortValue, Reference, TreeSpec
 
 MAX_SIZE = 5000
@@ -35,9 +36,7 @@ BESIDE = ("name", *GUARDS)
 CHILD_KEYS = {"none": (), "one": ("child",), "two": ("children",), "many": ("children",)}
 
 
-def load_tree(
-    reference: Path | str, leaves: Mapping[str, type[Leaf]] = LEAVES, instead: Instead = AS_IT_IS
-) -> TreeSpec:
+def load_tree(reference: Path | str, leaves: Leaves | None = None, instead: Instead = AS_IT_IS) -> TreeSpec:
     """Load by path or bare name; ConfigError with every problem in the file and the trees it uses.
 
     A file among `instead` (by its absolute path) is taken to hold the text given there.
@@ -48,7 +47,7 @@ def load_tree(
     return _Trees(node_types(leaves), given).load(reference.absolute(), ())
 
 
-def load_tree_text(text: str, name: str = "tree", leaves: Mapping[str, type[Leaf]] = LEAVES) -> TreeSpec:
+def load_tree_text(text: str, name: str = "tree", leaves: Leaves | None = None) -> TreeSpec:
     """The same from text; other trees are found by bare name or from the working folder."""
     return _Trees(node_types(leaves)).read(read_text(text, name), ())
 
@@ -102,6 +101,12 @@ class _Trees:
             message = f"got a tree of {size} nodes with its sub-trees, expected {MAX_SIZE} at most"
             raise ConfigError([source.at(()).problem(message)])
         return TreeSpec(file.tree, file.doc, source.at(()).file, ports or (), root, reader.flow.types, size)
+
+
+def _broken(word: str) -> str:
+    """What an unknown node might have been, had its plug-in been loaded."""
+    named = [f"; {each}" for each in registry.broken(LEAF_KIND) if each.name == word]
+    return "".join(named) or not_loaded()
 
 
 def _size(node: NodeSpec) -> int:
@@ -214,8 +219,10 @@ class _TreeReader:
             given = word in self.trees.given
             path = Path(word) if given else find("trees", word, self.source.folder(), mark)
         except ConfigError:
-            known = [*self.trees.types, *names("trees")]
-            message = f'got the unknown node "{word}", expected a node or a tree{guess(word, known)}'
+            known = [*self.trees.types, *names("trees", folder=self.source.folder())]
+            message = (
+                f'got the unknown node "{word}", expected a node or a tree{guess(word, known)}{_broken(word)}'
+            )
             raise ConfigError([mark.problem(message)]) from None
         if path in self.stack:
             chain = " > ".join(p.stem for p in (*self.stack[self.stack.index(path) :], path))

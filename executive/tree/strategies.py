@@ -1,23 +1,32 @@
-"""The strategies that are installed, with their trees."""
+"""The strategies that are installed and can be used, with their trees."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from executive.core import plugins
-from executive.pool.pool import Strategy
+from executive.core import registry
+from executive.core.errors import ConfigError
+from executive.core.registry import Broken
+from executive.pool import Strategy
+from executive.pool.kind import STRATEGY_KIND
 from executive.tree.load import AS_IT_IS, Instead, load_tree
 from executive.tree.spec import TreeSpec
 
 
 def load_strategies() -> tuple[Strategy, ...]:
-    """Every strategy registered, by name; PluginError for one that is not a `Strategy`."""
-    loaded = []
-    for name in plugins.found(plugins.STRATEGIES):
-        strategy = plugins.load(plugins.STRATEGIES, name, Strategy)
-        if isinstance(strategy, Strategy):
-            loaded.append(strategy)
-    return tuple(loaded)
+    """Every strategy that can be used, by name; the others are left out (`broken_strategies`)."""
+    usable = registry.every(STRATEGY_KIND).values()
+    return tuple(strategy for strategy in usable if not _problems(strategy))
+
+
+def broken_strategies() -> tuple[Broken, ...]:
+    """The strategies that the pool has to do without, and why."""
+    bad = [(s, problems) for s in registry.every(STRATEGY_KIND).values() if (problems := _problems(s))]
+    of_trees = (
+        Broken(STRATEGY_KIND.name, s.name, registry.source_of(STRATEGY_KIND, s.name), problems)
+        for s, problems in bad
+    )
+    return (*registry.broken(STRATEGY_KIND), *of_trees)
 
 
 def strategy_trees(strategies: Sequence[Strategy], instead: Instead = AS_IT_IS) -> dict[str, TreeSpec]:
@@ -26,3 +35,12 @@ def strategy_trees(strategies: Sequence[Strategy], instead: Instead = AS_IT_IS) 
     `instead` gives the texts of files that shall be taken to say something else.
     """
     return {strategy.name: load_tree(strategy.tree, instead=instead) for strategy in strategies}
+
+
+def _problems(strategy: Strategy) -> str:
+    """What is wrong with its tree, in one line."""
+    try:
+        load_tree(strategy.tree)
+    except ConfigError as error:
+        return "; ".join(str(problem) for problem in error.problems)
+    return ""

@@ -21,9 +21,11 @@ from executive.config.source import Place, Source
 from executive.config.validate import Problems, shown
 from executive.core.chance import generator
 from executive.core.errors import ConfigError
-from executive.inject.entries import RESERVED
-from executive.run.scenario import ResolvedScenario, resolve
+from executive.run.resolve import resolve
+from executive.run.resolved import ResolvedScenario
 from proving.campaign.shape import CampaignFile
+from proving.inject import INSTRUMENT as FAULTS
+from proving.inject import RESERVED
 
 Values = Mapping[str, Source]
 """What replaces what in the scenario: dotted key → data with the place it comes from."""
@@ -145,7 +147,7 @@ def prepared(campaign: Campaign, case: Drawn) -> Prepared:
         scenario = resolved(campaign, case)
     except ConfigError:
         return Prepared(str(yaml.safe_dump(scenario_of(campaign, case).data, sort_keys=False)), {})
-    return Prepared(scenario.dump(), {fault.name: fault.spec.name for fault in scenario.faults})
+    return Prepared(scenario.dump(), {fault.name: fault.spec.name for fault in scenario.of(FAULTS)})
 
 
 def draw_at(campaign: Campaign, place: Place, seed: int) -> Source:

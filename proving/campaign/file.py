@@ -14,7 +14,7 @@ from executive.config.source import Mark, Place, Source, read
 from executive.config.validate import Problems, listed, parse
 from executive.config.validate import shown as shown_data
 from executive.core.errors import ConfigError, Problem
-from executive.run.scenario import as_scenario
+from executive.run.resolve import as_scenario
 from executive.run.schema import schema
 from proving.campaign.cases import Campaign, Drawn, case_number, resolved, with_faults
 from proving.campaign.shape import CampaignFile

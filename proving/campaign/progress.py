@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from executive.core.clock import Stopwatch
 from proving.campaign.run import Watcher
 from proving.campaign.tally import Ended, Tally
-from proving.verdict import GOOD
+from proving.judge.verdict import GOOD
 
 _COLOURS = {"passed": "green", "expected failure": "yellow"}
 

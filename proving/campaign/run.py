@@ -10,13 +10,14 @@ from typing import Any
 from executive.config.source import Source
 from executive.core.clock import Stopwatch
 from executive.record.versions import versions
-from executive.run.scenario import ResolvedScenario, resolve
+from executive.run.resolve import resolve
+from executive.run.resolved import ResolvedScenario
 from proving.campaign.cases import Campaign, Drawn, Prepared, case_number, prepared, put, seed_of
 from proving.campaign.folder import CampaignFolder
 from proving.campaign.row import row_of, write_row
 from proving.campaign.tally import Ended, Tally
 from proving.engine import Case, Ending, Limits, settle
-from proving.verdict import Terms, judged
+from proving.judge.verdict import Terms, judged
 
 Begun = Callable[[Case], None]
 Engine = Callable[[Iterable[Case], Begun], Generator[Ending, None, None]]

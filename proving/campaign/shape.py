@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from executive.config.expect import Name
+from executive.config.models import Name
 from executive.config.validate import Strict, shown
 from executive.core.units import Duration, Fraction
 

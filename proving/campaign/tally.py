@@ -10,7 +10,7 @@ from executive.core.errors import LongarmError
 from proving.campaign.interval import wilson
 from proving.campaign.shape import StopRule
 from proving.engine import CaseClass
-from proving.verdict import GOOD, Word
+from proving.judge.verdict import GOOD, Word
 
 
 @dataclass(frozen=True)

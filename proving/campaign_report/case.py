@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from executive.core.units import UnitError, parse
-from executive.inject.entries import RESERVED
+from proving.inject.entries import RESERVED
 
 LOST = "lost"
 INFRASTRUCTURE = "infrastructure"

@@ -7,8 +7,8 @@ from types import NoneType
 from typing import get_args, get_type_hints
 
 from executive.core.types import Reason
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import Leaf
+from executive.tree.nodes.kind import leaves
 from executive.tree.spec import NodeSpec
 
 Abilities = frozenset[str]
@@ -18,7 +18,7 @@ NONE: Abilities = frozenset()
 
 def leaf_class(node: NodeSpec) -> type[Leaf] | None:
     """The class of a leaf, None for any other node."""
-    return LEAVES.get(node.type) if node.category == "leaf" else None
+    return leaves().get(node.type) if node.category == "leaf" else None
 
 
 def takes_time(leaf: type[Leaf]) -> bool:

@@ -7,16 +7,16 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import ConfigError
-from executive.inject.entries import RESERVED
-from executive.inject.faults import FaultSpec
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import History, events
-from executive.run.scenario import ResolvedScenario
+from executive.run.fault import FAULT_KIND, load_fault
+from executive.run.resolved import ResolvedScenario
 from proving.coverage.items import Item
 from proving.coverage.recipes import Fault, at_node, for_item
 from proving.coverage.universe import Universe
+from proving.inject.entries import RESERVED
 from proving.scenario_data import Data, resolved
 
 DURATIONS: dict[str, tuple[str | None, ...]] = {"helped": ("5 min",), "failed": (None,)}
@@ -76,9 +76,8 @@ def resolved_or_none(data: Data) -> ResolvedScenario | None:
 
 
 def _installed(fault: Fault) -> bool:
-    return next(iter(fault)) in plugins.found(plugins.FAULTS)
+    return next(iter(fault)) in registry.names(FAULT_KIND)
 
 
 def _lasting(kind: str) -> bool:
-    spec = plugins.load(plugins.FAULTS, kind, FaultSpec)
-    return isinstance(spec, FaultSpec) and spec.lasting
+    return load_fault(kind).lasting

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from executive.core import plugins
 from executive.core.types import Reason
-from executive.inject.faults import FaultSpec
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
+from executive.run.fault import FaultSpec, every_fault
 from proving.coverage.items import Item
 
 Fault = dict[str, Any]
@@ -89,8 +88,7 @@ def of_kind(spec: FaultSpec, strategies: Iterable[str]) -> Iterator[Fault]:
 
 def specs() -> list[FaultSpec]:
     """Every kind of fault that is installed."""
-    loaded = [plugins.load(plugins.FAULTS, name, FaultSpec) for name in plugins.found(plugins.FAULTS)]
-    return [spec for spec in loaded if isinstance(spec, FaultSpec)]
+    return list(every_fault())
 
 
 def for_item(item: Item, strategies: dict[str, Strategy]) -> Iterator[Fault]:

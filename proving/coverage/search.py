@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from shutil import rmtree
 
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.record import History
-from executive.run.scenario import ResolvedScenario
+from executive.run.resolved import ResolvedScenario
 from proving.coverage.bases import Base, candidates, resolved_or_none
 from proving.coverage.coverage import Coverage, put_together
 from proving.coverage.excuses import Excuses
@@ -17,8 +17,8 @@ from proving.coverage.items import Item
 from proving.coverage.seen import Seen
 from proving.coverage.universe import Universe
 from proving.engine import Case, Ending, settle
+from proving.judge.verdict import Terms, Verdict, Word, judged
 from proving.scenario_data import Data, read_back
-from proving.verdict import Terms, Verdict, Word, judged
 
 
 @dataclass(frozen=True)

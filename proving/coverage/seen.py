@@ -11,8 +11,6 @@ from typing import Any
 from executive.config.source import read_text
 from executive.core.errors import ConfigError, RecordError
 from executive.core.types import Call, Reason
-from executive.inject.entries import RESERVED
-from executive.inject.onsets import Sightings
 from executive.record import events
 from executive.record.evidence import leading
 from executive.record.history import History
@@ -20,6 +18,8 @@ from executive.tree.load import load_tree
 from executive.tree.strategies import load_strategies, strategy_trees
 from proving.coverage.items import Item
 from proving.coverage.universe import HALTED, Universe
+from proving.inject.entries import RESERVED
+from proving.inject.onsets import Sightings
 
 
 @dataclass

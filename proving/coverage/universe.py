@@ -10,14 +10,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from executive.core import plugins
+from executive.core import registry
 from executive.core.types import Reason
-from executive.inject.triggers import PHASES
-from executive.isc.hypotheses import Hypothesis
+from executive.isc import hypothesis_names
+from executive.run.fault import FAULT_KIND
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 from proving.coverage import abilities
 from proving.coverage.abilities import Abilities
 from proving.coverage.items import Item
+from proving.inject.triggers import PHASES
 
 HALTED, GUARD = "halted", str(Reason.GUARD)
 VERDICTS = ("chosen", "helped", "failed")
@@ -42,8 +43,8 @@ class Universe:
         nodes = [Item("node", name, word) for name, words in self.words.items() for word in words]
         chosen = [Item("strategy", name, word) for name in self.strategies for word in VERDICTS]
         phases = [Item("phase", phase, "entered") for phase in PHASES]
-        faults = [Item("fault", name, "fired") for name in plugins.found(plugins.FAULTS)]
-        led = [Item("hypothesis", str(h), "led") for h in Hypothesis]
+        faults = [Item("fault", name, "fired") for name in registry.every(FAULT_KIND)]
+        led = [Item("hypothesis", h, "led") for h in hypothesis_names()]
         return (*nodes, *chosen, *phases, *faults, *led)
 
 

@@ -15,7 +15,7 @@ from executive.config.find import shown
 from executive.config.source import read, read_text
 from executive.core.errors import LongarmError
 from executive.run import app
-from executive.run.scenario import resolve_source
+from executive.run.resolve import resolve_source
 from proving.engine.case import LOG, Case
 
 DONE, REFUSED, DEFECT, MACHINE, MEMORY = 0, 2, 3, 71, 72

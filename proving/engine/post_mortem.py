@@ -14,8 +14,9 @@ from executive.core.errors import LongarmError
 from executive.record import History, events
 from executive.record.recorder import Recorder
 from executive.record.result import RunFigures, summarise, write_result
-from executive.run.app import judged
-from executive.run.scenario import ResolvedScenario, resolve_scenario
+from executive.run.judging import judged
+from executive.run.resolve import resolve_scenario
+from executive.run.resolved import ResolvedScenario
 from proving.engine import child
 from proving.engine.case import LOG, Case, CaseClass, Ending
 from proving.engine.server import Death
@@ -100,7 +101,7 @@ def _summarised(ending: Ending) -> dict[str, Any]:
     total = len(scenario.mission.waypoints) if scenario else None
     figures = RunFigures(ending.wall_s, waypoints_total=total)
     if scenario is not None:
-        result = judged(scenario, folder, figures)
+        result, _ = judged(scenario, folder, figures)
         result |= {"scenario": scenario.name, "seed": scenario.seed, "tier": scenario.tier}
     else:
         result = summarise(record, folder / "truth.mcap", figures)

@@ -20,9 +20,9 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from executive.core import plugins, units
+from executive.core import registry, units
 from executive.core.clock import Stopwatch
-from executive.core.errors import LongarmError, PluginError
+from executive.core.errors import LongarmError
 from executive.tree.strategies import load_strategies, strategy_trees
 from proving.engine import child
 from proving.engine.case import Case
@@ -172,12 +172,11 @@ def _die_with_parent() -> None:
 
 def _preload() -> None:
     """Import what cases will need; what cannot be loaded is told by the case that asks for it."""
-    for group in (plugins.BACKENDS, plugins.LOCALIZERS, plugins.STRATEGIES, plugins.FAULTS):
-        for name in plugins.found(group):
-            with suppress(PluginError):
-                preload = getattr(plugins.load(group, name), "preload", None)
-                if preload is not None:
-                    preload()
+    for kind in registry.kinds():
+        for entry in registry.every(kind).values():
+            preload = getattr(entry, "preload", None)
+            if preload is not None:
+                preload()
     with suppress(LongarmError):
         strategy_trees(load_strategies())
     units.factor("m")  # half a second the first time

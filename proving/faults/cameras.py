@@ -25,7 +25,7 @@ from executive.core.types import (
     Shot,
 )
 from executive.core.units import Duration
-from executive.inject.faults import Cue, FaultSpec
+from executive.run.fault import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted, Held
 from proving.faults.parameters import SIDES, Nothing, OneCamera, Parameters
 

@@ -23,7 +23,7 @@ from executive.core.types import (
     Vec2,
 )
 from executive.core.units import Angle, Length
-from executive.inject.faults import Cue, FaultSpec
+from executive.run.fault import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted
 from proving.faults.parameters import Nothing, Parameters
 

@@ -22,7 +22,7 @@ from executive.core.types import (
     Vec2,
 )
 from executive.core.units import Angle
-from executive.inject.faults import Cue, FaultSpec
+from executive.run.fault import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted
 from proving.faults.parameters import Parameters
 

@@ -10,7 +10,7 @@ from pydantic import Field
 from executive.core.ports import Action, Devices, Link
 from executive.core.types import Call, Outcome, Reason
 from executive.core.units import Duration, Fraction
-from executive.inject.faults import Cue, FaultSpec
+from executive.run.fault import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted, Held, Unanswered
 from proving.faults.parameters import Nothing, Parameters
 

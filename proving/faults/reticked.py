@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from executive.inject.faults import Cue, TreeParts
+from executive.run.fault import Cue
+from executive.run.instrument import TreeParts
 from executive.tree.addresses import means
 from proving.faults.altered import Counted
 

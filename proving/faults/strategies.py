@@ -11,8 +11,8 @@ from py_trees.common import Status
 from pydantic import Field
 
 from executive.core.units import Duration
-from executive.inject.faults import Cue, FaultSpec
-from executive.pool.pool import Situation, Strategy
+from executive.pool import Situation, Strategy
+from executive.run.fault import Cue, FaultSpec
 from proving.faults.altered import Counted
 from proving.faults.parameters import Parameters
 from proving.faults.reticked import NodeFault, Reticked

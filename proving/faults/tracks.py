@@ -18,7 +18,7 @@ from executive.core.types import (
     TrackReading,
 )
 from executive.core.units import Current, Fraction
-from executive.inject.faults import Cue, FaultSpec
+from executive.run.fault import Cue, FaultSpec
 from proving.faults.altered import Counted
 from proving.faults.parameters import SIDES, OneTrack
 

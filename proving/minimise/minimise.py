@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import yaml
 
-from executive.run.scenario import resolve_scenario
+from executive.run.resolve import resolve_scenario
 from proving.engine.server import ForkServer
 from proving.minimise.failure import Failure
 from proving.minimise.reductions import reduce_all

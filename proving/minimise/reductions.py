@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from executive.core import plugins
 from executive.core.units import (
     DURATION,
     UnitError,
     quantity,
     split,
 )
-from executive.inject.entries import RESERVED
-from executive.inject.faults import FaultSpec
+from executive.run.fault import FaultSpec, load_fault
+from proving.inject.entries import RESERVED
 from proving.minimise.fewer import fewer
 from proving.minimise.trier import Trier
 from proving.scenario_data import Data, Keys, get, replaced, without
@@ -157,7 +156,7 @@ def _kind(entry: Data) -> str:
 
 
 def _spec(trier: Trier, index: int) -> FaultSpec:
-    return plugins.load(plugins.FAULTS, _kind(trier.best["faults"][index]), FaultSpec)
+    return load_fault(_kind(trier.best["faults"][index]))
 
 
 def _name(trier: Trier, index: int) -> str:

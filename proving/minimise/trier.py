@@ -8,7 +8,7 @@ from pathlib import Path
 from shutil import rmtree
 
 from executive.core.errors import ConfigError
-from executive.run.scenario import ResolvedScenario
+from executive.run.resolved import ResolvedScenario
 from proving.engine import Case, Limits, settle
 from proving.engine.server import ForkServer
 from proving.engine.supervisor import run_alone

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from proving.engine import Ending, settle
-from proving.verdict import Terms, Verdict, Word, judged
+from proving.judge.verdict import Terms, Verdict, Word, judged
 
 IDENTITY = ("digest", "wall", "wall_s", "case")
 """What differs between two runs that did the same, told by their texts and clocks alone."""

@@ -15,7 +15,7 @@ from executive.config.find import shown
 from executive.config.source import Mark, Source, read
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.tree.catalogue import NodeType, node_types
 from executive.tree.load import load_tree
 from executive.tree.nodes.base import PortSpec

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 from executive.core.chance import generator
 from executive.core.clock import Stopwatch
-from executive.run.scenario import resolve_scenario
+from executive.run.resolve import resolve_scenario
 from executive.tree.strategies import load_strategies
 from proving.coverage.trials import Trial, conduct
 from proving.mutation.equivalents import Equivalents

@@ -9,8 +9,9 @@ from enum import Enum
 from typing import Any
 
 from executive.config.source import Place, Source
+from executive.core import registry
 from executive.core.units import UnitError, split
-from executive.core.values import VALUE_TYPES
+from executive.core.values import VALUE_TYPE_KIND
 from executive.tree.catalogue import NodeType
 from executive.tree.load import BESIDE
 from executive.tree.nodes.base import PortSpec
@@ -124,7 +125,7 @@ OPERATORS: dict[str, Operator] = {
 def defaults(source: Source) -> Iterator[Change]:
     """The defaults in a tree's own ports, as `change_literal` changes what is given to a node."""
     for name, port in (source.data.get("ports") or {}).items():
-        kind = VALUE_TYPES[port["type"]]
+        kind = registry.get(VALUE_TYPE_KIND, port["type"])
         if kind.literal and "default" in port:
             for value in _scaled(port["default"]):
                 yield Change(("ports", name, "default"), value, f"{name} {value} for {port['default']}")

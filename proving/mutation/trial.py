@@ -14,10 +14,10 @@ from proving.coverage.seen import Seen
 from proving.coverage.trials import Trial
 from proving.coverage.universe import Universe
 from proving.engine import Case, Ending, Limits
+from proving.judge.verdict import Terms
 from proving.mutation.account import Account, account
 from proving.mutation.mutants import Mutant
 from proving.suite.collect import Collected
-from proving.verdict import Terms
 
 SLOWER, GRACE_S = 3.0, 1800.0
 """A mutant may take this many times the mission time of the original, and this much more."""

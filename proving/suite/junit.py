@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+from proving.judge.verdict import Word
 from proving.suite.run import Tested
-from proving.verdict import Word
 
 _ELEMENTS = {
     Word.EXPECTED_FAILURE: "skipped",

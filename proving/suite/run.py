@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from proving.engine import Case, Ending, Limits, run_cases, settle
+from proving.judge.verdict import Terms, Verdict, judged, repeat_command
 from proving.suite.collect import Collected
-from proving.verdict import Terms, Verdict, judged, repeat_command
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,7 @@ from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import LongarmError
 from executive.core.ports import Backend
-from executive.inject.faults import Fault, FaultSpec
-from executive.isc.hypotheses import Hypothesis
+from executive.run.fault import Fault, FaultSpec
 
 if TYPE_CHECKING:
     from sim_pybullet.world_faults import Tally, WorldFaults
@@ -72,7 +71,7 @@ def spec(
     name: str,
     fault: type[WorldFault[Any]],
     parameters: type[Parameters],
-    hypothesis: Hypothesis | None,
+    hypothesis: str | None,
     category: str,
     graded: bool = False,
     lasting: bool = False,
@@ -85,7 +84,7 @@ def spec(
         doc,
         parameters,
         make,
-        str(hypothesis or ""),
+        hypothesis or "",
         backends=("pybullet",),
         tiers=("full", "geometric"),
         lasting=lasting,

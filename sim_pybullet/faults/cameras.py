@@ -10,7 +10,6 @@ from pydantic import Field
 
 from executive.core.types import LEFT, RIGHT
 from executive.core.units import Angle
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ class HeadVibration(WorldFault[Trembling]):
         return done.frames > 1
 
 
-IMAGE_BLUR = spec("image_blur", ImageBlur, Blur, Hypothesis.POOR_VIEW, "cameras", graded=True)
+IMAGE_BLUR = spec("image_blur", ImageBlur, Blur, "poor_view", "cameras", graded=True)
 HEAD_VIBRATION = spec(
-    "head_vibration", HeadVibration, Trembling, Hypothesis.ILLUMINATION_CHANGE, "cameras", graded=True
+    "head_vibration", HeadVibration, Trembling, "illumination_change", "cameras", graded=True
 )

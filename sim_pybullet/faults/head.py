@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from executive.core.units import Angle, Fraction, Length
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Nothing, Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
@@ -147,9 +146,9 @@ class LanderSettling(WorldFault[Settling]):
         return done.frames > 0
 
 
-MISALIGNED = Hypothesis.HEAD_MISALIGNED
-PAN_LOCKED = spec("pan_locked", PanLocked, Nothing, Hypothesis.LOST_ROVER, "head")
-TILT_LOCKED = spec("tilt_locked", TiltLocked, Nothing, Hypothesis.LOST_ROVER, "head")
+MISALIGNED = "head_misaligned"
+PAN_LOCKED = spec("pan_locked", PanLocked, Nothing, "lost_rover", "head")
+TILT_LOCKED = spec("tilt_locked", TiltLocked, Nothing, "lost_rover", "head")
 HEAD_SLOW = spec("head_slow", HeadSlow, Slowness, None, "head", graded=True)
 HEAD_OFFSET = spec("head_offset", HeadOffset, Offset, MISALIGNED, "head", graded=True)
 HEAD_BACKLASH = spec("head_backlash", HeadBacklash, Play, MISALIGNED, "head", graded=True)

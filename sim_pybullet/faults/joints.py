@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Nothing, WorldFault, spec
 
 if TYPE_CHECKING:
@@ -35,5 +34,5 @@ class CabinLocked(_JointFault):
         sim.world.wake()
 
 
-ARM_LOCKED = spec("arm_locked", ArmLocked, Nothing, Hypothesis.POOR_VIEW, "tracks")
-CABIN_LOCKED = spec("cabin_locked", CabinLocked, Nothing, Hypothesis.POOR_VIEW, "tracks")
+ARM_LOCKED = spec("arm_locked", ArmLocked, Nothing, "poor_view", "tracks")
+CABIN_LOCKED = spec("cabin_locked", CabinLocked, Nothing, "poor_view", "tracks")

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from executive.core.units import Angle, Duration, Fraction
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.faults.cameras import CameraChoice
 
@@ -105,7 +104,7 @@ class Glare(WorldFault[Veil]):
         return done.frames > 0
 
 
-CHANGE = Hypothesis.ILLUMINATION_CHANGE
+CHANGE = "illumination_change"
 SUN_MOVING = spec("sun_moving", SunMoving, SunPath, CHANGE, "light", graded=True)
 CLOUD = spec("cloud", Cloud, Clouds, CHANGE, "light", graded=True)
 GLARE = spec("glare", Glare, Veil, CHANGE, "light", graded=True)

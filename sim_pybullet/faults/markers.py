@@ -9,7 +9,6 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from executive.core.units import Angle, Fraction, Length
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.seeing import Glint, Screen
 
@@ -172,7 +171,7 @@ class MarkerOccluded(WorldFault[Hiding]):
         )
 
 
-LOST, OUTLIER = Hypothesis.MARKER_LOST, Hypothesis.LOCALISATION_OUTLIER
+LOST, OUTLIER = "marker_lost", "localisation_outlier"
 LED_OFF = spec("led_off", LedOff, Markers, LOST, "markers")
 LED_DIM = spec("led_dim", LedDim, Dimming, LOST, "markers", graded=True)
 LED_STUCK_ON = spec("led_stuck_on", LedStuckOn, Markers, LOST, "markers")

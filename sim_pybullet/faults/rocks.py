@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Generic, TypeVar
 from pydantic import Field
 
 from executive.core.units import Length, Speed
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
@@ -167,10 +166,10 @@ class WrongElevationModel(_RockFault[Rise]):
         return self.rock is not None and sim.touches_rover(self.rock)
 
 
-STUCK = Hypothesis.STUCK_ON_OBSTACLE
+STUCK = "stuck_on_obstacle"
 ROCK_ON_PATH = spec("rock_on_path", RockOnPath, RockAhead, STUCK, "terrain", lasting=True)
 MOVING_ROCK = spec("moving_rock", MovingRock, RollingRock, STUCK, "terrain", lasting=True)
 CABIN_GROUNDING = spec("cabin_grounding", CabinGrounding, BellyStone, STUCK, "terrain", graded=True)
 WRONG_ELEVATION_MODEL = spec(
-    "wrong_elevation_model", WrongElevationModel, Rise, Hypothesis.TILT_RISK, "terrain", graded=True
+    "wrong_elevation_model", WrongElevationModel, Rise, "tilt_risk", "terrain", graded=True
 )

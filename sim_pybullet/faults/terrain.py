@@ -9,7 +9,6 @@ from pydantic import Field
 
 from executive.core.types import Vec2
 from executive.core.units import Fraction, Length
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.soil import Patch, Soil
 
@@ -131,11 +130,7 @@ class SandTrap(_PatchFault[Depth]):
         return replace(here, sinkage=self.p.slip * level)
 
 
-SLIP_BURST = spec("slip_burst", SlipBurst, Slip, Hypothesis.SLIP_LONGITUDINAL, "terrain", graded=True)
-SIDE_SLOPE_DRIFT = spec(
-    "side_slope_drift", SideSlopeDrift, Drift, Hypothesis.SIDE_DRIFT, "terrain", graded=True
-)
-LOW_FRICTION_PATCH = spec(
-    "low_friction_patch", LowFrictionPatch, Smoothness, Hypothesis.SLIP_TURNING, "terrain"
-)
-SAND_TRAP = spec("sand_trap", SandTrap, Depth, Hypothesis.SLIP_LONGITUDINAL, "terrain", graded=True)
+SLIP_BURST = spec("slip_burst", SlipBurst, Slip, "slip_longitudinal", "terrain", graded=True)
+SIDE_SLOPE_DRIFT = spec("side_slope_drift", SideSlopeDrift, Drift, "side_drift", "terrain", graded=True)
+LOW_FRICTION_PATCH = spec("low_friction_patch", LowFrictionPatch, Smoothness, "slip_turning", "terrain")
+SAND_TRAP = spec("sand_trap", SandTrap, Depth, "slip_longitudinal", "terrain", graded=True)

@@ -13,7 +13,6 @@ from executive.core.units import (
     Fraction,
     Length,
 )
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Nothing, Parameters, WorldFault, spec
 from sim_pybullet.lay import Bend
 
@@ -118,7 +117,7 @@ class TetherSlack(WorldFault[Loop]):
         return loose and done.driven_m > DRIVEN_M
 
 
-SNAG = Hypothesis.TETHER_SNAG
+SNAG = "tether_snag"
 TETHER_SNAG = spec("tether_snag", TetherSnag, Snag, SNAG, "tether")
 TETHER_CAPSTAN = spec("tether_capstan", TetherCapstan, Wrap, SNAG, "tether", graded=True)
 SPOOL_JAM = spec("spool_jam", SpoolJam, Nothing, SNAG, "tether")

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Generic, Literal, TypeVar
 from pydantic import Field
 
 from executive.core.units import Duration, Fraction
-from executive.isc.hypotheses import Hypothesis
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
@@ -92,8 +91,8 @@ class TrackJam(_MotorFault[Side]):
         motor.jammed = level > 0.0
 
 
-MOTOR_DEAD = spec("motor_dead", MotorDead, Side, Hypothesis.TRACK_ASYMMETRY, "tracks")
-TRACK_WEAK = spec("track_weak", TrackWeak, Weakness, Hypothesis.TRACK_ASYMMETRY, "tracks", graded=True)
-MOTOR_RUNAWAY = spec("motor_runaway", MotorRunaway, Runaway, Hypothesis.TRACK_ASYMMETRY, "tracks")
-MOTOR_REVERSED = spec("motor_reversed", MotorReversed, Side, Hypothesis.TRACK_ASYMMETRY, "tracks")
-TRACK_JAM = spec("track_jam", TrackJam, Side, Hypothesis.STUCK_ON_OBSTACLE, "tracks")
+MOTOR_DEAD = spec("motor_dead", MotorDead, Side, "track_asymmetry", "tracks")
+TRACK_WEAK = spec("track_weak", TrackWeak, Weakness, "track_asymmetry", "tracks", graded=True)
+MOTOR_RUNAWAY = spec("motor_runaway", MotorRunaway, Runaway, "track_asymmetry", "tracks")
+MOTOR_REVERSED = spec("motor_reversed", MotorReversed, Side, "track_asymmetry", "tracks")
+TRACK_JAM = spec("track_jam", TrackJam, Side, "stuck_on_obstacle", "tracks")

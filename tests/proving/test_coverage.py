@@ -11,7 +11,7 @@ from executive.core.errors import ConfigError, RecordError
 from executive.record import events
 from executive.record.history import At
 from executive.tree.load import load_tree_text
-from executive.tree.nodes import LEAVES
+from executive.tree.nodes.kind import leaves
 from proving.coverage.abilities import takes_time
 from proving.coverage.command import coverage as command_line
 from proving.coverage.coverage import cover
@@ -89,10 +89,10 @@ def test_what_a_node_can_end_as_follows_from_what_is_inside(outer, words):
 
 
 def test_a_leaf_says_by_its_types_whether_it_takes_time():
-    assert {name for name in ("wait", "localise", "drive_leg") if takes_time(LEAVES[name])} == {
+    assert {name for name in ("wait", "localise", "drive_leg") if takes_time(leaves()[name])} == {
         *("wait", "localise", "drive_leg")
     }
-    assert not any(takes_time(LEAVES[name]) for name in ("facing", "arrived", "set_leg", "as_predicted"))
+    assert not any(takes_time(leaves()[name]) for name in ("facing", "arrived", "set_leg", "as_predicted"))
 
 
 def test_halted_is_running_and_then_idle_not_done_and_then_idle():

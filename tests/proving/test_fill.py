@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from executive.core import plugins
+from executive.core import registry
 from executive.run.app import RunOptions, run
+from executive.run.fault import FAULT_KIND
 from proving.coverage.bases import candidates
 from proving.coverage.coverage import cover
 from proving.coverage.fill import file_name, needed
@@ -41,7 +42,7 @@ def test_a_file_is_named_after_what_it_fills_or_what_broke():
 
 @pytest.mark.parametrize("word", RECIPES)
 def test_every_recipe_fits_the_parameters_of_its_fault(word):
-    installed = plugins.found(plugins.FAULTS)
+    installed = registry.names(FAULT_KIND)
     by_name = {spec.name: spec for spec in specs()}
     for fault in RECIPES[word]:
         ((kind, parameters),) = fault.items()

@@ -9,7 +9,7 @@ import yaml
 
 from executive.core.errors import ConfigError
 from executive.run.app import RunOptions, run
-from executive.run.scenario import resolve_scenario
+from executive.run.resolve import resolve_scenario
 from proving.engine import Case, CaseClass, Ending
 from proving.minimise.command import minimise as command_line
 from proving.minimise.failure import Failure, failure_of
@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 from pydantic import BaseModel
 
-from executive.inject.faults import Fault, FaultSpec
+from executive.run.fault import Fault, FaultSpec
 from executive.core.types import Outcome, Reason
 
 ACTIVE = set()

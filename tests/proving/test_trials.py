@@ -9,8 +9,8 @@ import pytest
 from executive.tree.load import load_tree
 from proving.coverage.trials import conduct
 from proving.engine import Case, CaseClass, Ending, run_cases, settle
+from proving.judge.verdict import Terms, Verdict, Word
 from proving.mutation.account import Account, account
-from proving.verdict import Terms, Verdict, Word
 
 
 def test_a_tree_file_can_be_taken_to_say_something_else(suite, tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from executive.config.backends import BackendRequest
-from executive.core import plugins
+from executive.core import registry
 from executive.core.errors import LongarmError
 from executive.core.ports import LocaliseRequest
 from executive.core.rig import RigCalibration
@@ -17,8 +17,8 @@ from executive.core.types import (
     Quality,
     Segment,
 )
-from executive.inject.faults import FaultSpec
-from executive.isc.prediction import quat_from_heading_tilt
+from executive.isc.attitude import quat_from_heading_tilt
+from executive.run.fault import FAULT_KIND
 from executive.testing.fake import FakeBackend, FakeWorld
 from perception.localizer.localizer import LedStereoLocalizer
 from sim_pybullet import BACKEND
@@ -40,7 +40,7 @@ CORNER = (
 
 
 def make(name, **parameters):
-    spec = plugins.load(plugins.FAULTS, name, FaultSpec)
+    spec = registry.get(FAULT_KIND, name)
     return spec.make(spec.model.model_validate(parameters))
 
 

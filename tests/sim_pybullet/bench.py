@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from executive.config.backends import BackendRequest
-from executive.core import plugins
+from executive.core import registry
 from executive.core.rig import RigCalibration
 from executive.core.types import (
     Array,
@@ -16,7 +16,7 @@ from executive.core.types import (
     Shot,
     Window,
 )
-from executive.inject.faults import FaultSpec
+from executive.run.fault import FAULT_KIND
 from perception.frames.difference import led_sequence
 from perception.markers.single import find_candidates
 from sim_pybullet import BACKEND
@@ -39,7 +39,7 @@ class Bench:
         backend = BACKEND.create(BackendRequest(config, AHEAD, 3, tier, RigCalibration(), None, 1.0))
         assert isinstance(backend, SimBackend)
         self.backend, self.world, self.devices = backend, backend.world, backend.devices
-        self.spec = plugins.load(plugins.FAULTS, fault, FaultSpec)
+        self.spec = registry.get(FAULT_KIND, fault)
         self.fault = self.spec.make(self.spec.model.model_validate(parameters))
         self.level = 0.0
         pan_rad = math.atan2(float(self.position[1]), float(self.position[0]))

@@ -14,7 +14,7 @@ import pytest
 
 import sim_pybullet.faults as catalogue
 from executive.core.types import Reason
-from executive.inject.faults import FaultSpec
+from executive.run.fault import FaultSpec
 from tests.sim_pybullet import fault_measures as measure
 from tests.sim_pybullet.bench import SPEED_M_S, Bench
 from tests.sim_pybullet.fault_measures import DEG

@@ -15,8 +15,8 @@ from executive.config.source import read_text
 from executive.core.clock import Stopwatch
 from executive.core.ports import LocaliseRequest
 from executive.core.types import Outcome, Quality, Reason
-from executive.isc.classification import Classification
-from executive.pool.pool import (
+from executive.isc import Classification, known_channels, known_hypotheses
+from executive.pool import (
     Choice,
     Pool,
     Situation,
@@ -25,8 +25,9 @@ from executive.pool.pool import (
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.run.assembly import prior_pose
+from executive.run.resolve import as_scenario, resolve
+from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run, RunEnd, execute
-from executive.run.scenario import ResolvedScenario, as_scenario, resolve
 from executive.testing import FakeBackend, OverheadLocalizer
 from executive.tree.build import BuiltTree, build
 from executive.tree.nodes.base import Leaf
@@ -213,7 +214,15 @@ def prepare(setting: Setting, folder: Path, diary: Diary) -> tuple[Run, BuiltTre
         devices=backend.devices,
         rig=backend.rig,
         localizer=localizer,
-        classification=Classification(prior_pose(route[0]), backend.rig, backend.clock),
+        classification=Classification(
+            prior_pose(route[0]),
+            backend.rig,
+            backend.clock,
+            known_hypotheses(),
+            known_channels(),
+            journal.assessment,
+            markers_expected=4,
+        ),
         pool=pool,
         journal=journal,
     )

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from executive.cli import invoke
-from executive.config.backends import BackendRequest, BackendSpec
-from executive.core import plugins
+from executive.config.backends import BACKEND_KIND, BackendRequest, BackendSpec
+from executive.core import registry
 from executive.core.rig import RigCalibration
 from executive.core.types import Point, Segment
-from executive.pool.pool import Strategy
+from executive.pool import Strategy
 from executive.testing import check_backend, check_strategy
 from executive.tree.load import load_tree
 from executive.tree.nodes.base import Direction
@@ -45,7 +45,7 @@ root:
     ("name", "tier"), [("fake", "geometric"), ("pybullet", "geometric"), ("pybullet", "full")]
 )
 def test_a_backend_keeps_every_promise(name: str, tier: str) -> None:
-    spec = plugins.load(plugins.BACKENDS, name, BackendSpec)
+    spec = registry.get(BACKEND_KIND, name)
     assert isinstance(spec, BackendSpec)
     check_backend(spec, BackendRequest(spec.world_model(), ROUTE, 3, tier, RigCalibration(), None, 1.0))
 

@@ -11,14 +11,15 @@ from typing import Any
 import pytest
 
 from executive.cli import invoke
+from executive.core import registry
 from executive.core.errors import NodeRaised
-from executive.pool.pool import Pool
+from executive.pool import Pool
 from executive.record import History, events
 from executive.record.reader import is_complete
 from executive.run.runner import Run
 from executive.testing import FakeBackend
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import Leaf
+from executive.tree.nodes.kind import LEAF_KIND
 from tests.system.bench import SETTINGS, Broken, Ended, Sabotage, Setting, run
 
 TICKS = (1, 2, 10)
@@ -240,7 +241,7 @@ def test_a_leaf_that_raises_ends_the_command_with_3_and_a_traceback(
     def broken(self: Leaf) -> None:
         raise Broken("step is broken")
 
-    monkeypatch.setattr(LEAVES[leaf], "step", broken)
+    monkeypatch.setattr(registry.get(LEAF_KIND, leaf), "step", broken)
     file = "blind.yaml" if leaf == "drive_blind" else "short.yaml"
     assert invoke(["run", file, "--out", "out", "--quiet"]) == 3
     told = capsys.readouterr()

@@ -25,7 +25,7 @@ class Ticking:
         self.seen: list[str] = []
 
     def tick(self) -> None:
-        self.run.services.classification.sense(self.backend.devices)
+        self.run.services.classification.tracker.sense(self.backend.devices)
         self.built.root.tick_once()
         tip = self.built.root.tip()
         values = sorted((key, str(value)) for key, value in self.built.store.values.items())

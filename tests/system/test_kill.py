@@ -14,7 +14,7 @@ import pytest
 from executive.cli import invoke
 from executive.record import History, events, read_record
 from executive.record.reader import is_complete
-from executive.run.scenario import resolve_scenario
+from executive.run.resolve import resolve_scenario
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 
 from docs.list_scenarios import PAGE, lesson, page
-from executive.core import plugins
+from executive.core import registry
+from executive.run.fault import FAULT_KIND
+from proving.inject import INSTRUMENT as FAULTS
+from proving.judge import INSTRUMENT as JUDGE
 from proving.suite.collect import collect
 from proving.suite.run import SuiteOptions, run_suite
 
@@ -35,12 +38,12 @@ def suite():
 
 
 def test_every_fault_of_the_catalogue_has_a_scenario(suite):
-    injected = {fault.spec.name for each in suite for fault in each.scenario.faults}
-    assert set(plugins.found(plugins.FAULTS)) <= injected
+    injected = {fault.spec.name for each in suite for fault in each.scenario.of(FAULTS)}
+    assert set(registry.names(FAULT_KIND)) <= injected
 
 
 def test_every_kind_of_onset_and_profile_is_shown(suite):
-    faults = [fault for each in suite for fault in each.scenario.faults]
+    faults = [fault for each in suite for fault in each.scenario.of(FAULTS)]
     onsets = {name for fault in faults for name in fault.start.model_dump(exclude_none=True)}
     profiles = {name for fault in faults if fault.profile for name in fault.profile.model_fields_set}
     assert onsets >= {"time", "progress", "waypoint", "node", "strategy", "phase", "when", "edge", "held"}
@@ -49,7 +52,7 @@ def test_every_kind_of_onset_and_profile_is_shown(suite):
 
 def test_every_scenario_is_named_as_its_file_and_expects_something(suite):
     assert [each.file.stem for each in suite] == [each.scenario.name for each in suite]
-    assert [each.name for each in suite if not each.scenario.expect.outcome] == []
+    assert [each.name for each in suite if not each.scenario.of(JUDGE).expect.outcome] == []
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)

@@ -9,11 +9,12 @@ from typing import Any
 
 from executive.cli.importing.markup import Tag
 from executive.cli.importing.nodes import plain
+from executive.core import registry
 from executive.core.values import (
     FLAG,
     NUMBER,
     TEXT,
-    VALUE_TYPES,
+    VALUE_TYPE_KIND,
 )
 from executive.tree.catalogue import ITEMS, NodeType
 from executive.tree.nodes.base import Direction, PortSpec
@@ -101,7 +102,7 @@ def completed(
     for name in dict.fromkeys([*ports, *sorted(given), *wanted]):
         use = found.of.get(name, Use())
         port = {"type": None, "direction": use.direction} | ports.get(name, {})
-        if port["type"] not in VALUE_TYPES:
+        if port["type"] not in registry.names(VALUE_TYPE_KIND):
             port["type"] = use.type or use.guessed or TEXT.name
             if use.type is None and use.guessed is None:
                 untold.append(name)
@@ -146,7 +147,7 @@ def _port(
 
 def _declared(tag: Tag) -> dict[str, Any]:
     given = tag.attributes.get("type", "")
-    kind = given if given in VALUE_TYPES else _FOREIGN.get(given)
+    kind = given if given in registry.names(VALUE_TYPE_KIND) else _FOREIGN.get(given)
     port: dict[str, Any] = {"type": kind, "direction": _DIRECTIONS[tag.name]}
     if "default" in tag.attributes:
         port["default"] = plain(tag.attributes["default"], kind or TEXT.name)

@@ -45,7 +45,7 @@ class Explanation:
     pose: PoseEstimate | None
     hypotheses: Mapping[str, float]
     weighed_s: float | None
-    severity_s: float | None
+    time_to_margin_s: float | None
     strategies: tuple[Mapping[str, object], ...]
     refusals: tuple[At[str], ...]
     calls: tuple[At[Call], ...]
@@ -61,7 +61,7 @@ class Explanation:
             "pose": None if self.pose is None else _pose(self.pose),
             "hypotheses": dict(self.hypotheses),
             "weighed_s": self.weighed_s,
-            "severity_s": self.severity_s,
+            "time_to_margin_s": self.time_to_margin_s,
             "strategies": [dict(row) for row in self.strategies],
             "refusals": [{"t_s": at.time_s, "why": at.event} for at in self.refusals],
             "calls": [
@@ -107,7 +107,7 @@ def explain(folder: Path, at: str | None = None) -> Explanation:
         pose=poses[-1] if poses else None,
         hypotheses=_ranked(weighed[-1].event.weights) if weighed else {},
         weighed_s=weighed[-1].time_s if weighed else None,
-        severity_s=weighed[-1].event.severity_s if weighed else None,
+        time_to_margin_s=weighed[-1].event.time_to_margin_s if weighed else None,
         strategies=tuple(strategy_rows(History.holding(strategies))),
         refusals=tuple(refused),
         calls=tuple(_until(history, Call, at_s)),

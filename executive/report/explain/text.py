@@ -93,8 +93,9 @@ def _hypotheses(found: Explanation) -> Iterator[str]:
     rest = sum(found.hypotheses.values()) - sum(likely.values())
     if rest > 0:
         yield f"  {rest:4.2f}  all others together"
-    if found.severity_s is not None:
-        yield f"  going on like this, the off-track margin would be crossed in {_t(found.severity_s).strip()}"
+    if found.time_to_margin_s is not None:
+        left = _t(found.time_to_margin_s).strip()
+        yield f"  going on like this, the off-track margin would be crossed in {left}"
 
 
 def _strategies(found: Explanation) -> list[str]:

@@ -239,7 +239,7 @@ class Leaf(Behaviour):
         if alarm is None or not self.heeds_alarm or self.status is not Status.RUNNING:
             return None
         self.trace.alarm = None
-        self.services.journal.assessment(self.services.classification.failed(alarm))
+        self.services.classification.on_failure(alarm)
         return alarm
 
     def terminate(self, new_status: Status) -> None:

@@ -19,7 +19,7 @@ from executive.core.values import (
     POSE,
     SEGMENT,
 )
-from executive.isc.hypotheses import SEEING, Hypothesis
+from executive.isc.bank import NOMINAL
 from executive.navigation import guidance
 from executive.tree.nodes.base import In, Leaf
 
@@ -74,7 +74,7 @@ class NotOvershot(Leaf):
         behind = abs(guidance.heading_error_rad(self.pose, self.target)) > math.radians(100.0)
         if behind and remaining <= self.near:
             outcome: Outcome[object] = Outcome(Reason.OVERSHOOT, f"by {remaining * 1e3:.0f} mm")
-            self.services.journal.assessment(self.services.classification.failed(outcome))
+            self.services.classification.on_failure(outcome)
             return outcome
         return Outcome(Reason.DONE)
 
@@ -106,9 +106,11 @@ class AsPredicted(Leaf):
     outcomes = (Reason.DONE, Reason.UNEXPECTED)
 
     def step(self) -> Outcome[object]:
-        assessment = self.services.classification.assess(self.services.classification.predicted())
+        classification = self.services.classification
+        assessment = classification.assess()
         anomaly, weight = assessment.anomaly
-        if anomaly is assessment.likeliest and anomaly not in SEEING and weight >= self.below:
+        moved_otherwise = not classification.bank.moves_as_predicted(anomaly)
+        if anomaly == assessment.likeliest and moved_otherwise and weight >= self.below:
             return Outcome(Reason.UNEXPECTED, f"{anomaly} at {weight:.2f}")
-        nominal = assessment.weights[Hypothesis.NOMINAL]
+        nominal = assessment.weights[NOMINAL]
         return Outcome(Reason.DONE, f"nominal at {nominal:.2f}")

@@ -65,20 +65,20 @@ class DrivingLeaf(ActionLeaf):
     def watch(self) -> Outcome[object] | None:
         problem = self._problem(self._carry_on())
         if problem is not None:
-            self.services.journal.assessment(self.services.classification.failed(problem))
+            self.services.classification.on_failure(problem)
         return problem
 
     def _problem(self, pose: PoseEstimate) -> Outcome[object] | None:
         """Why this drive must not go on, None if it may."""
-        telemetry = self.services.classification.telemetry
-        if telemetry is not None:
-            if miscount := self._belts.problem(telemetry.tracks):
+        sensed = self.services.classification.tracker.sensed
+        if sensed is not None:
+            if miscount := self._belts.problem(sensed.tracks):
                 return Outcome(Reason.DEVICE, miscount)
-            tilt_rad = math.hypot(telemetry.tilt.roll_rad, telemetry.tilt.pitch_rad)
+            tilt_rad = math.hypot(sensed.tilt.roll_rad, sensed.tilt.pitch_rad)
             if tilt_rad > self.tilt_limit:
                 return Outcome(Reason.TILT, f"{math.degrees(tilt_rad):.1f} deg")
-            if telemetry.tether.tension_n > self.tension_limit:
-                return Outcome(Reason.TETHER, f"pulls with {telemetry.tether.tension_n:.1f} N")
+            if sensed.tether.tension_n > self.tension_limit:
+                return Outcome(Reason.TETHER, f"pulls with {sensed.tether.tension_n:.1f} N")
         room_m = math.inf if self.segment is None else guidance.room_m(pose, self.segment, self.sigmas)
         if room_m <= 0.0:
             return Outcome(Reason.OFF_TRACK, f"may be {-room_m * 1e3:.0f} mm beyond the margin")
@@ -87,7 +87,7 @@ class DrivingLeaf(ActionLeaf):
     def finish(self, outcome: Outcome[TrackReading]) -> Outcome[Any]:
         self._carry_on()
         if not outcome.ok:
-            self.services.journal.assessment(self.services.classification.failed(outcome))
+            self.services.classification.on_failure(outcome)
         return outcome
 
     def halt(self) -> None:

@@ -21,7 +21,7 @@ class CallForHelp(ActionLeaf):
         failed = self.trace.last_failure
         path, outcome = failed if failed else ("", Outcome[object](Reason.NO_STRATEGY))
         weights = self.services.classification.weights
-        evidence = {str(h): round(w, 4) for h, w in weights.items() if w >= 0.01}
+        evidence = {name: round(w, 4) for name, w in weights.items() if w >= 0.01}
         call = Call(self.services.clock.now_s, outcome.reason, f"{path}: {outcome.detail}", evidence)
         self.services.journal.call(call)
         self._why = outcome

@@ -19,7 +19,6 @@ from executive.core.values import (
     QUALITY,
     SEGMENT,
 )
-from executive.isc.prediction import unusable
 from executive.tree.nodes.action import ActionLeaf
 from executive.tree.nodes.base import FromTree, In, InOut
 
@@ -74,20 +73,19 @@ class Localise(ActionLeaf):
         """Tell the classification, the record and the tree."""
         classification = self.services.classification
         if not outcome.ok or outcome.value is None:
-            self.services.journal.assessment(classification.failed(outcome))
+            classification.on_failure(outcome)
             return outcome
         fix = outcome.value.on(self.segment)
-        self.services.journal.assessment(classification.fixed(fix))
+        classification.on_fix(fix)
         self.services.journal.estimate(fix)
-        self.pose = classification.joined(fix).on(self.segment)
+        self.pose = classification.fuse(fix).on(self.segment)
         return Outcome(Reason.DONE, "; ".join(filter(None, (_summary(fix), outcome.detail))), fix)
 
     def gate_fix(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
         """The outcome; IMPLAUSIBLE in place of a pose that is no number, old, or out of the belts' reach."""
         if not outcome.ok or outcome.value is None:
             return outcome
-        why = unusable(outcome.value, self._start_s)
-        why = why or self.services.classification.beyond_reach(outcome.value)
+        why = self.services.classification.tracker.gate_fix(outcome.value, self._start_s)
         return Outcome(Reason.IMPLAUSIBLE, why) if why else outcome
 
 

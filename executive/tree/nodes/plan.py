@@ -20,7 +20,7 @@ from executive.core.values import (
     SEGMENT,
     TEXT,
 )
-from executive.isc import prediction
+from executive.isc.motion import ADVANCE, YAW_EFFICIENCY
 from executive.navigation import guidance
 from executive.tree.nodes.base import (
     FromTree,
@@ -101,8 +101,8 @@ class Compensate(Leaf):
         if ratio is None:
             return Outcome(Reason.GUARD, f"no {self.of} was observed since the last fix")
         ratio = max(ratio, 0.2)
-        parameter = prediction.YAW_EFFICIENCY if turning else prediction.ADVANCE
-        classification.adopt(parameter, ratio, sigma=0.3)
+        parameter = YAW_EFFICIENCY if turning else ADVANCE
+        classification.tracker.reset_parameter(parameter, ratio, sigma=0.3)
         classification.settle()
         return Outcome(Reason.DONE, f"{self.of} ratio {ratio:.2f} adopted")
 
@@ -114,7 +114,7 @@ class DoubtPrediction(Leaf):
     heading = In[float](ANGLE, "standard deviation added to the heading", default=math.radians(20.0))
 
     def step(self) -> Outcome[object]:
-        self.services.classification.doubt(self.position, self.position, self.heading)
+        self.services.classification.tracker.inflate(self.position, self.position, self.heading)
         return Outcome(Reason.DONE)
 
 

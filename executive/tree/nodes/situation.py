@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from executive.core.types import Outcome, Segment
-from executive.pool.pool import Situation
+from executive.isc.readings import Readings
+from executive.pool.situation import Situation
 from executive.tree.nodes.services import Services
 
 
@@ -22,10 +23,15 @@ def choose(
     situation = Situation(
         time_s=services.clock.now_s,
         failure=failure,
-        assessment=services.classification.assess(pose, segment),
+        assessment=services.classification.extrapolate(pose, segment),
         pose=pose,
         segment=segment,
-        cabin=services.devices.cabin.read(),
+        readings=_readings(services),
     )
-    services.journal.assessment(situation.assessment)
     return services.pool.choose(situation, at_hand).strategy
+
+
+def _readings(services: Services) -> Readings:
+    """The latest of what is read continuously, and of the cabin."""
+    sensed = services.classification.tracker.readings.by_device
+    return Readings({**sensed, "cabin": services.devices.cabin.read()})

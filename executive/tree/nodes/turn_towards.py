@@ -47,7 +47,7 @@ class TurnTowards(DrivingLeaf):
             detail = f"{MOST_TURNS} turns came no nearer than {math.degrees(self._least_rad):.1f} deg"
             self._target = None  # asked once more, perhaps after a remedy, it tries again
             outcome: Outcome[Belts] = Outcome(Reason.OFF_HEADING, detail)
-            self.services.journal.assessment(self.services.classification.failed(outcome))
+            self.services.classification.on_failure(outcome)
             return outcome
         belts = guidance.turn(motion, error, self.services.rig.rover.track_gauge_m)
         if self.segment is not None:

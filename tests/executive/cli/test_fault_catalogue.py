@@ -6,7 +6,8 @@ import pytest
 
 from executive.cli import invoke
 from executive.config.describe import parameters
-from executive.core import plugins
+from executive.core import registry
+from executive.run.fault import FAULT_KIND
 from executive.run.schema import schema
 
 
@@ -48,7 +49,7 @@ def test_a_default_is_written_as_a_file_would_have_it():
 
 def test_editors_know_the_parameters_of_every_installed_fault(scenario):
     known = kinds(scenario)
-    assert set(known) == set(plugins.found(plugins.FAULTS))
+    assert set(known) == set(registry.names(FAULT_KIND))
     hanging = known["node_hangs"]["properties"]["node_hangs"]
     assert (hanging["required"], hanging["additionalProperties"]) == (["node"], False)
     shift, drawn = known["pose_outlier"]["properties"]["pose_outlier"]["properties"]["x"]["anyOf"]

@@ -9,7 +9,7 @@ MODULE = """
 from pydantic import BaseModel, ConfigDict, Field
 from typing import Annotated
 from executive.config.backends import BackendSpec
-from executive.inject.faults import Fault, FaultSpec
+from executive.run.fault import Fault, FaultSpec
 from executive.core.units import Angle, Length, Fraction
 
 class Light(BaseModel):

@@ -3,7 +3,7 @@
 import pytest
 
 from executive.core.errors import ConfigError
-from executive.run.scenario import resolve_scenario
+from executive.run.resolve import resolve_scenario
 from executive.run.schema import schema
 
 
@@ -41,8 +41,8 @@ def test_settings_replace_the_defaults(folder):
 @pytest.mark.parametrize(
     ("written", "expected"),
     [
-        ("led_sterio", ':4:12: got "led_sterio", expected a localizer'),
-        ("{led_sterio: {}}", ':4:13: got "led_sterio", expected a localizer'),
+        ("led_sterio", ':4:12: got the unknown localizer "led_sterio"'),
+        ("{led_sterio: {}}", ':4:13: got the unknown localizer "led_sterio"'),
         ("{led_stereo: {outlinse: true}}", ':4:26: got the unknown key "outlinse"'),
         ("{led_stereo: {outlines: 3}}", ":4:36: got 3"),
         ("[led_stereo]", ":4:12: got a list of 1, expected the name of a localizer"),

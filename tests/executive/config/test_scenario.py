@@ -9,10 +9,12 @@ from executive.config.find import find, names
 from executive.config.mission import load_mission
 from executive.config.source import Mark
 from executive.config.validate import listed
-from executive.core import plugins
-from executive.core.errors import ConfigError, PluginError
+from executive.core import registry
+from executive.core.errors import ConfigError
 from executive.core.rig import RigCalibration
-from executive.run.scenario import resolve_scenario
+from executive.run.fault import FAULT_KIND
+from executive.run.resolve import resolve_scenario
+from proving.inject import INSTRUMENT as FAULTS
 
 
 def problems_of(path, **options):
@@ -35,8 +37,8 @@ def test_a_scenario_is_resolved_with_every_default(folder):
     assert scenario.world.light.sun_elevation == math.radians(35)
     assert scenario.world.mast_height == 1.5
     assert [s.tolerance_m for s in scenario.mission.route()] == [0.03, 0.02]
-    assert scenario.faults[0].duration_s == 1200.0
-    assert scenario.faults[0].start.progress == 0.4
+    assert scenario.of(FAULTS)[0].duration_s == 1200.0
+    assert scenario.of(FAULTS)[0].start.progress == 0.4
     assert scenario.rig == RigCalibration()
     assert scenario.tree.name == "go"
 
@@ -75,7 +77,7 @@ def test_every_float_survives_the_dump_bit_for_bit(folder, x, elevation, limit, 
 
 def test_a_mission_is_a_scenario_with_defaults(folder):
     problems = problems_of("missions/short.yaml", overrides=["backend=plian"])
-    assert "expected a backend" in problems[0]
+    assert "the unknown backend" in problems[0]
     assert 'did you mean "plain"?' in problems[0]
     scenario = resolve_scenario("missions/short.yaml", overrides=["backend=plain"])
     assert (scenario.name, scenario.seed, scenario.tier) == ("short", 0, "full")
@@ -83,7 +85,7 @@ def test_a_mission_is_a_scenario_with_defaults(folder):
 
 
 def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
-    faults = listed(sorted(plugins.found(plugins.FAULTS)))
+    faults = listed(sorted(registry.names(FAULT_KIND)))
     (folder / "scenarios" / "dark.yaml").write_text(
         "scenario: dark\nmission: short\nseed: -1\ntier: ful\nbackend: plain\n"
         "world: {light: {sun_elevaton: 35 deg}, mast_height: 30}\n"
@@ -104,8 +106,8 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
         'scenarios/dark.yaml:11:19: got "reachd", expected reached, safe_hold, help, time_limit or error; '
         'did you mean "reached"?',
         "scenarios/dark.yaml:11:35: got an angle, expected something true or false",
-        'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, mission, seed, tier, '  # noqa: E501  (as it is printed)
-        'backend, localizer, world, rig, faults, expect, expected_to_fail or ...; did you mean "time_limit"?',
+        'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, project, mission, '
+        'seed, tier, backend, localizer, policy, world, rig, time_limit or ...; did you mean "time_limit"?',
     ]
 
 
@@ -163,7 +165,10 @@ def test_without_a_tier_the_backends_first_is_meant(folder):
 
 def test_a_plugin_that_cannot_be_loaded_is_named(folder):
     path = rewritten(folder, "backend: plain", "backend: broken")
-    with pytest.raises(PluginError, match=r"longarm.backends: broken = third_party_plugin:MISSING"):
+    with pytest.raises(
+        ConfigError,
+        match=r"dark.yaml:4:10: backend broken: .*longarm.backends: broken = third_party_plugin:MISSING",
+    ):
         resolve_scenario(path)
 
 

@@ -16,9 +16,8 @@ from executive.core.types import (
     Reason,
     Segment,
 )
-from executive.isc import prediction
-from executive.isc.classification import Assessment, Classification
-from executive.isc.hypotheses import Hypothesis
+from executive.isc import Assessment, Classification, correction, known_channels, known_hypotheses
+from executive.isc.motion import ADVANCE, YAW_EFFICIENCY
 from executive.testing import FakeBackend, FakeWorld
 from tests.executive.isc.test_prediction import pose
 
@@ -36,15 +35,15 @@ class Bench:
     def drive(self, left_m: float, right_m: float) -> None:
         action = self.backend.devices.tracks.drive(left_m, right_m, 0.0014)
         while action.poll() is None:
-            self.mind.sense(self.backend.devices)
+            self.mind.tracker.sense(self.backend.devices)
             self.backend.advance()
-        self.mind.sense(self.backend.devices)
+        self.mind.tracker.sense(self.backend.devices)
 
     def pull(self, tension_n: float) -> None:
         """Let the tether be felt like this."""
         tether = self.backend.devices.tether.read()
-        telemetry = self.mind.sense(self.backend.devices)
-        self.mind.telemetry = replace(telemetry, tether=replace(tether, tension_n=tension_n))
+        sensed = self.mind.tracker.sense(self.backend.devices)
+        self.mind.tracker.sensed = replace(sensed, tether=replace(tether, tension_n=tension_n))
 
     def fix(self, markers: int = 4) -> PoseEstimate:
         robot = self.backend.robot
@@ -54,22 +53,38 @@ class Bench:
     def turn(self, angle_rad: float) -> Assessment:
         rotation = angle_rad / self.mind.motion.yaw_efficiency
         self.drive(-rotation * GAUGE_M / 2, rotation * GAUGE_M / 2)
-        return self.mind.fixed(self.fix())
+        return self.mind.on_fix(self.fix())
 
     def advance(self, distance_m: float) -> Assessment:
         travel = distance_m / self.mind.motion.advance
         self.drive(travel, travel)
-        return self.mind.fixed(self.fix())
+        return self.mind.on_fix(self.fix())
+
+
+def classification(backend: FakeBackend, markers_expected: int = 4) -> Classification:
+    """One that weighs all that is registered, and keeps what it announces in `heard`."""
+    heard: list[Assessment] = []
+    made = Classification(
+        pose(2.0, 0.0, 0.0, 0.05, 0.3),
+        backend.rig,
+        backend.clock,
+        known_hypotheses(),
+        known_channels(),
+        heard.append,
+        markers_expected,
+    )
+    made.heard = heard
+    return made
 
 
 @pytest.fixture
 def bench() -> Bench:
     request = BackendRequest(FakeWorld(), (SEGMENT,), 1, "geometric", RigCalibration(), None, 1.0)
     backend = FakeBackend(request)
-    mind = Classification(pose(2.0, 0.0, 0.0, 0.05, 0.3), backend.rig, backend.clock)
+    mind = classification(backend)
     made = Bench(backend, mind)
-    mind.sense(backend.devices)
-    mind.fixed(made.fix())
+    mind.tracker.sense(backend.devices)
+    mind.on_fix(made.fix())
     for _ in range(4):
         made.turn(0.3)
         made.advance(0.1)
@@ -81,51 +96,51 @@ def change_soil(bench: Bench, **changed: float) -> None:
 
 
 def test_known_soil_stays_nominal(bench: Bench) -> None:
-    assert bench.turn(0.4).likeliest is Hypothesis.NOMINAL
-    assert bench.advance(0.1).weights[Hypothesis.NOMINAL] > 0.85
+    assert bench.turn(0.4).likeliest == "nominal"
+    assert bench.advance(0.1).weights["nominal"] > 0.85
 
 
 def test_soil_that_turns_half_as_much_is_turning_slip(bench: Bench) -> None:
     change_soil(bench, yaw_efficiency=0.25)
-    assert bench.turn(0.5).anomaly[0] is Hypothesis.SLIP_TURNING
+    assert bench.turn(0.5).anomaly[0] == "slip_turning"
     assert bench.mind.observed_turn_ratio == pytest.approx(0.25 / 0.6, abs=0.05)
 
 
 def test_half_the_advance_is_longitudinal_slip(bench: Bench) -> None:
     change_soil(bench, advance=0.5)
     bench.advance(0.1)
-    assert bench.advance(0.1).anomaly[0] is Hypothesis.SLIP_LONGITUDINAL
+    assert bench.advance(0.1).anomaly[0] == "slip_longitudinal"
 
 
 def test_no_advance_at_a_high_current_is_an_obstacle(bench: Bench) -> None:
     change_soil(bench, advance=0.0, drive_current_a=0.30)
-    assert bench.advance(0.1).anomaly[0] is Hypothesis.STUCK_ON_OBSTACLE
+    assert bench.advance(0.1).anomaly[0] == "stuck_on_obstacle"
 
 
 def test_a_missing_marker_is_noticed(bench: Bench) -> None:
     for _ in range(2):
-        found = bench.mind.fixed(bench.fix(markers=3))
-    assert found.anomaly[0] is Hypothesis.MARKER_LOST
+        found = bench.mind.on_fix(bench.fix(markers=3))
+    assert found.anomaly[0] == "marker_lost"
 
 
 @pytest.mark.parametrize(
     ("reason", "hypothesis"),
     [
-        (Reason.UNSTABLE_IMAGES, Hypothesis.ILLUMINATION_CHANGE),
-        (Reason.IMPLAUSIBLE, Hypothesis.LOCALISATION_OUTLIER),
-        (Reason.OVERSHOOT, Hypothesis.OVERSHOOT),
-        (Reason.TETHER, Hypothesis.TETHER_SNAG),
-        (Reason.TILT, Hypothesis.TILT_RISK),
+        (Reason.UNSTABLE_IMAGES, "illumination_change"),
+        (Reason.IMPLAUSIBLE, "localisation_outlier"),
+        (Reason.OVERSHOOT, "overshoot"),
+        (Reason.TETHER, "tether_snag"),
+        (Reason.TILT, "tilt_risk"),
     ],
 )
-def test_a_failure_speaks_for_its_hypothesis(bench: Bench, reason: Reason, hypothesis: Hypothesis) -> None:
+def test_a_failure_speaks_for_its_hypothesis(bench: Bench, reason: Reason, hypothesis: str) -> None:
     if reason is Reason.TETHER:
         bench.pull(5.0)
-    assert bench.mind.failed(Outcome(reason)).anomaly[0] is hypothesis
+    assert bench.mind.on_failure(Outcome(reason)).anomaly[0] == hypothesis
 
 
 def test_a_pull_that_nobody_feels_is_no_snag(bench: Bench) -> None:
-    assert bench.mind.failed(Outcome(Reason.TETHER)).anomaly[0] is not Hypothesis.TETHER_SNAG
+    assert bench.mind.on_failure(Outcome(Reason.TETHER)).anomaly[0] != "tether_snag"
 
 
 def test_what_is_not_explained_teaches_nothing(bench: Bench) -> None:
@@ -140,25 +155,25 @@ def test_what_is_not_explained_teaches_nothing(bench: Bench) -> None:
 def test_adopting_a_ratio_makes_the_next_turn_right(bench: Bench) -> None:
     change_soil(bench, yaw_efficiency=0.25)
     bench.turn(0.5)
-    bench.mind.adopt(prediction.YAW_EFFICIENCY, bench.mind.observed_turn_ratio or 1.0, 0.3)
+    bench.mind.tracker.reset_parameter(YAW_EFFICIENCY, bench.mind.observed_turn_ratio or 1.0, 0.3)
     bench.mind.settle()
     before = bench.backend.robot.heading_rad
     bench.turn(0.5)
     assert bench.backend.robot.heading_rad - before == pytest.approx(0.5, rel=0.1)
-    assert bench.mind.weights[Hypothesis.NOMINAL] > 0.5
+    assert bench.mind.weights["nominal"] > 0.5
 
 
-def test_severity_is_the_time_to_the_off_track_margin(bench: Bench) -> None:
-    bench.mind.motion = prediction.adopt(bench.mind.motion, prediction.ADVANCE, 1.0, 0.01)
-    assessment = bench.mind.assess(pose(2.5, 0.10, math.radians(30.0)), SEGMENT)
+def test_extrapolation_gives_the_time_to_the_off_track_margin(bench: Bench) -> None:
+    bench.mind.tracker.motion = correction.reset_parameter(bench.mind.motion, ADVANCE, 1.0, 0.01)
+    assessment = bench.mind.extrapolate(pose(2.5, 0.10, math.radians(30.0)), SEGMENT)
     assert assessment.time_to_margin_s == pytest.approx((0.25 - 0.10) / (0.0014 * math.sin(math.radians(30))))
-    assert bench.mind.assess(pose(2.5, 0.10, 0.0), SEGMENT).time_to_margin_s is None
+    assert bench.mind.extrapolate(pose(2.5, 0.10, 0.0), SEGMENT).time_to_margin_s is None
 
 
-def test_a_blocked_drive_leaves_doubt_along_its_way(bench: Bench) -> None:
+def test_a_blocked_drive_inflates_along_its_way(bench: Bench) -> None:
     bench.drive(0.1, 0.1)
     before = bench.mind.predicted()
-    bench.mind.failed(Outcome(Reason.BLOCKED))
+    bench.mind.on_failure(Outcome(Reason.BLOCKED))
     doubted = bench.mind.predicted()
     c, s = math.cos(doubted.heading_rad), math.sin(doubted.heading_rad)
     ahead = Segment(Point(0.0, 0.0), Point(c, s), 0.03, 0.25, 0.03)
@@ -167,22 +182,49 @@ def test_a_blocked_drive_leaves_doubt_along_its_way(bench: Bench) -> None:
     assert doubted.sigma_across_m(ahead) < before.sigma_across_m(ahead) + 0.02
 
 
-def test_a_fix_after_doubt_still_tells_that_the_rover_is_stuck(bench: Bench) -> None:
+def test_a_fix_after_inflation_still_tells_that_the_rover_is_stuck(bench: Bench) -> None:
     for _ in range(3):
         bench.advance(0.1)
     at = bench.fix()
     bench.drive(0.1, 0.1)  # the belts turn, yet the rover is seen where it was
-    bench.mind.doubt(0.15, 0.15, math.radians(20.0))
-    stuck = bench.mind.fixed(replace(at, time_s=bench.backend.clock.now_s))
-    assert stuck.likeliest is Hypothesis.STUCK_ON_OBSTACLE
-    assert stuck.weights[Hypothesis.LOCALISATION_OUTLIER] == 0.0
+    bench.mind.tracker.inflate(0.15, 0.15, math.radians(20.0))
+    stuck = bench.mind.on_fix(replace(at, time_s=bench.backend.clock.now_s))
+    assert stuck.likeliest == "stuck_on_obstacle"
+    assert stuck.weights["localisation_outlier"] == 0.0
 
 
 def test_a_marker_less_is_told_but_does_not_keep_the_model_from_learning(bench: Bench) -> None:
     for _ in range(4):
         travel = 0.1
         bench.drive(travel, travel)
-        lost = bench.mind.fixed(bench.fix(markers=3))
-    assert lost.likeliest is Hypothesis.MARKER_LOST
+        lost = bench.mind.on_fix(bench.fix(markers=3))
+    assert lost.likeliest == "marker_lost"
     assert bench.mind.motion.advance == pytest.approx(0.95, abs=0.01)
     assert math.sqrt(bench.mind.motion.covariance[3, 3]) < 0.05  # it began at 0.06 and grows with travel
+
+
+@pytest.mark.parametrize(("expected", "seen"), [(3, 3), (0, 0), (1, 1), (7, 7)])
+def test_a_fix_on_all_markers_expected_stays_nominal(bench: Bench, expected: int, seen: int) -> None:
+    bench.mind = classification(bench.backend, expected)
+    for _ in range(5):
+        found = bench.mind.on_fix(bench.fix(markers=seen))
+    assert found.weights["nominal"] > 0.8
+    assert found.weights["marker_lost"] < 0.05
+
+
+def test_one_of_three_markers_missing_is_noticed(bench: Bench) -> None:
+    bench.mind = classification(bench.backend, markers_expected=3)
+    for _ in range(2):
+        found = bench.mind.on_fix(bench.fix(markers=2))
+    assert found.anomaly[0] == "marker_lost"
+
+
+def test_fixes_failures_and_extrapolations_are_announced_in_order(bench: Bench) -> None:
+    bench.mind = classification(bench.backend)
+    told = [
+        bench.mind.on_fix(bench.fix()),
+        bench.mind.on_failure(Outcome(Reason.BLOCKED)),
+        bench.mind.extrapolate(pose(2.5, 0.1, 0.3), SEGMENT),
+    ]
+    bench.mind.assess()
+    assert bench.mind.heard == told

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from executive.core.types import PoseEstimate
-from executive.isc import prediction
-from executive.isc.prediction import (
+from executive.isc import attitude, correction, gate, motion, prediction
+from executive.isc.motion import (
     ADVANCE,
     DRIFT,
     YAW_EFFICIENCY,
@@ -31,7 +31,7 @@ def pose(
     return PoseEstimate(
         time_s=0.0,
         position_site_m=(x, y, 0.0),
-        quat_site_body=prediction.quat_from_heading_tilt(heading, 0.0, 0.0),
+        quat_site_body=attitude.quat_from_heading_tilt(heading, 0.0, 0.0),
         covariance=np.diag([sigma_m**2] * 3 + [1e-6, 1e-6, sigma_rad**2]),
         source="markers",
         markers=4,
@@ -39,26 +39,26 @@ def pose(
 
 
 def known(state: MotionState, advance: float, efficiency: float) -> MotionState:
-    state = prediction.adopt(state, ADVANCE, advance, 1e-6)
-    return prediction.adopt(state, YAW_EFFICIENCY, efficiency, 1e-6)
+    state = correction.reset_parameter(state, ADVANCE, advance, 1e-6)
+    return correction.reset_parameter(state, YAW_EFFICIENCY, efficiency, 1e-6)
 
 
 @given(st.floats(-math.pi, math.pi), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
 def test_quaternion_is_heading_then_pitch_then_roll(heading: float, roll: float, pitch: float) -> None:
     expected = Rotation.from_euler("ZYX", [heading, pitch, roll]).as_matrix()
-    actual = Rotation.from_quat(prediction.quat_from_heading_tilt(heading, roll, pitch)).as_matrix()
+    actual = Rotation.from_quat(attitude.quat_from_heading_tilt(heading, roll, pitch)).as_matrix()
     assert np.allclose(actual, expected, atol=1e-12)
 
 
 @given(st.floats(-100.0, 100.0))
 def test_wrapped_angle_is_the_same_direction(angle: float) -> None:
-    wrapped = prediction.wrap_rad(angle)
+    wrapped = attitude.wrap_rad(angle)
     assert -math.pi < wrapped <= math.pi
     assert math.isclose(math.cos(wrapped), math.cos(angle), abs_tol=1e-9)
 
 
 def test_equal_belts_advance_straight_by_travel_times_advance() -> None:
-    state = known(prediction.start(pose(1.0, 2.0, 0.5), NOISE), 0.9, 0.5)
+    state = known(motion.start(pose(1.0, 2.0, 0.5), NOISE), 0.9, 0.5)
     moved = prediction.predict(state, 0.1, 0.1, GAUGE_M, 71.0, NOISE).pose()
     assert moved.x_m == pytest.approx(1.0 + 0.09 * math.cos(0.5))
     assert moved.y_m == pytest.approx(2.0 + 0.09 * math.sin(0.5))
@@ -66,21 +66,21 @@ def test_equal_belts_advance_straight_by_travel_times_advance() -> None:
 
 
 def test_opposite_belts_turn_on_the_spot_by_the_efficiency() -> None:
-    state = known(prediction.start(pose(0.0, 0.0, 0.0), NOISE), 0.9, 0.5)
+    state = known(motion.start(pose(0.0, 0.0, 0.0), NOISE), 0.9, 0.5)
     moved = prediction.predict(state, -0.05, 0.05, GAUGE_M, 36.0, NOISE).pose()
     assert moved.heading_rad == pytest.approx(0.5 * 0.1 / GAUGE_M)
     assert math.hypot(moved.x_m, moved.y_m) < 1e-12
 
 
 def test_standing_still_adds_no_uncertainty() -> None:
-    state = prediction.start(pose(0.0, 0.0, 0.0), NOISE)
+    state = motion.start(pose(0.0, 0.0, 0.0), NOISE)
     later = prediction.predict(state, 0.0, 0.0, GAUGE_M, 1000.0, NOISE)
     assert np.array_equal(later.covariance, state.covariance)
     assert later.time_s == 1000.0
 
 
 def test_jacobian_agrees_with_finite_differences() -> None:
-    state = prediction.start(pose(0.3, -0.2, 0.7), NOISE)
+    state = motion.start(pose(0.3, -0.2, 0.7), NOISE)
     quiet = MotionNoise(
         position_m_per_sqrt_m=0,
         position_m_per_sqrt_rad=0,
@@ -107,7 +107,7 @@ def test_filter_learns_how_the_soil_turns_and_slips() -> None:
     truth = {"advance": 0.8, "efficiency": 0.35, "drift": 0.15}
     rng = np.random.default_rng(5)
     x = y = heading = 0.0
-    state = prediction.start(pose(x, y, heading), NOISE)
+    state = motion.start(pose(x, y, heading), NOISE)
     for _ in range(12):
         for left, right in ((-0.03, 0.03), (0.1, 0.1)):
             travel, rotation = (left + right) / 2, (right - left) / GAUGE_M
@@ -117,7 +117,7 @@ def test_filter_learns_how_the_soil_turns_and_slips() -> None:
             heading += turn
             state = prediction.predict(state, left, right, GAUGE_M, 0.0, NOISE)
             noisy = pose(*(np.array([x, y, heading]) + rng.normal(0, [0.001, 0.001, 0.002])))
-            state = prediction.correct(state, noisy, NOISE)
+            state = correction.correct(state, noisy, NOISE)
     assert state.advance == pytest.approx(truth["advance"], abs=0.04)
     assert state.yaw_efficiency == pytest.approx(truth["efficiency"], abs=0.04)
     assert state.drift_rad_m == pytest.approx(truth["drift"], abs=0.06)
@@ -127,7 +127,7 @@ def test_normalised_innovation_is_consistent_when_the_model_holds() -> None:
     rng = np.random.default_rng(11)
     squared = []
     for _ in range(400):
-        state = prediction.start(pose(0.0, 0.0, 0.0), NOISE)
+        state = motion.start(pose(0.0, 0.0, 0.0), NOISE)
         drawn = rng.multivariate_normal(state.mean, state.covariance)
         left, right = 0.06, 0.09
         travel, rotation = (left + right) / 2, (right - left) / GAUGE_M
@@ -148,16 +148,16 @@ def test_normalised_innovation_is_consistent_when_the_model_holds() -> None:
         moved = np.array([x, y, heading]) + np.array([*position, rng.normal(0, yaw)])
         fix = pose(*(moved + rng.normal(0, [1e-3, 1e-3, 2e-3])))
         predicted = prediction.predict(state, left, right, GAUGE_M, 1.0, NOISE)
-        innovation, covariance = prediction.innovate(predicted, fix)
+        innovation, covariance = correction.innovate(predicted, fix)
         squared.append(innovation @ np.linalg.solve(covariance, innovation))
     assert np.mean(squared) == pytest.approx(3.0, abs=0.4)  # chi-square of 3, three sigma of the mean
 
 
 def test_covariance_stays_symmetric_and_positive_over_a_long_trek() -> None:
-    state = prediction.start(pose(0.0, 0.0, 0.0), NOISE)
+    state = motion.start(pose(0.0, 0.0, 0.0), NOISE)
     for step in range(300):
         state = prediction.predict(state, 0.1, 0.101, GAUGE_M, float(step), NOISE)
-        state = prediction.correct(state, state.pose().on(None), NOISE)
+        state = correction.correct(state, state.pose().on(None), NOISE)
     assert np.array_equal(state.covariance, state.covariance.T)
     assert np.linalg.eigvalsh(state.covariance).min() > 0.0
 
@@ -175,17 +175,17 @@ def test_covariance_stays_symmetric_and_positive_over_a_long_trek() -> None:
 )
 def test_a_pose_that_is_no_number_or_old_says_nothing(change, why):
     pose = PoseEstimate(101.0, (1.0, 2.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), "markers")
-    assert prediction.unusable(replace(pose, **change), since_s=100.0) == why
+    assert gate.unusable(replace(pose, **change), since_s=100.0) == why
 
 
 @given(st.floats(0.0005, 0.1), st.floats(0.001, 0.1), st.floats(-1.0, 1.0))
-def test_a_joined_fix_is_no_less_certain_than_the_fix_and_lies_within_both(
+def test_a_fused_fix_is_no_less_certain_than_the_fix_and_lies_within_both(
     sigma_m: float, sigma_rad: float, luck: float
 ) -> None:
-    start = prediction.start(pose(10.0, 2.0, 0.5), NOISE)
+    start = motion.start(pose(10.0, 2.0, 0.5), NOISE)
     moved = prediction.predict(start, 0.1, 0.1, GAUGE_M, 71.0, NOISE)
     fix = pose(moved.pose().x_m + luck * sigma_m, moved.pose().y_m, 0.5, sigma_m, sigma_rad)
-    found = prediction.joined(prediction.correct(moved, fix, NOISE), fix)
+    found = correction.fuse(correction.correct(moved, fix, NOISE), fix)
     for i in (0, 1, 5):
         assert found.covariance[i, i] <= min(fix.covariance[i, i], moved.pose().covariance[i, i]) * (1 + 1e-6)
     assert np.linalg.eigvalsh(found.covariance)[0] > 0
@@ -196,8 +196,8 @@ def test_a_joined_fix_is_no_less_certain_than_the_fix_and_lies_within_both(
 
 
 def test_what_the_model_does_not_explain_is_where_the_fix_sees_it() -> None:
-    state = prediction.start(pose(1.0, 2.0, 0.5), NOISE)
+    state = motion.start(pose(1.0, 2.0, 0.5), NOISE)
     fix = pose(1.4, 1.8, -0.3, 0.05, 0.1)
-    found = prediction.joined(prediction.relocate(state, fix), fix)
+    found = correction.fuse(correction.reset_pose(state, fix), fix)
     assert (found.x_m, found.y_m) == (fix.x_m, fix.y_m)
     assert found.heading_rad == pytest.approx(fix.heading_rad)

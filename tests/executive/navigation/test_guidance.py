@@ -15,8 +15,10 @@ from executive.core.types import (
     Reason,
     Segment,
 )
-from executive.isc import prediction
-from executive.isc.prediction import MotionNoise
+from executive.isc import correction
+from executive.isc.attitude import wrap_rad
+from executive.isc.motion import DRIFT, MotionNoise, start
+from executive.isc.prediction import predict
 from executive.navigation import guidance
 from executive.navigation.guidance import GuidanceLimits
 from tests.executive.isc.test_prediction import pose
@@ -26,13 +28,13 @@ GAUGE_M = 0.125
 
 
 def leg(at: PoseEstimate, segment: Segment = SEGMENT, longest_m: float = 0.1):
-    motion = prediction.start(at, MotionNoise())
+    motion = start(at, MotionNoise())
     return guidance.plan_leg(motion, at, segment.end, segment, longest_m, GAUGE_M, GuidanceLimits())
 
 
 def after(at: PoseEstimate, belts: guidance.Belts) -> PoseEstimate:
-    motion = prediction.start(at, MotionNoise())
-    return prediction.predict(motion, belts.left_m, belts.right_m, GAUGE_M, 1.0, MotionNoise()).pose()
+    motion = start(at, MotionNoise())
+    return predict(motion, belts.left_m, belts.right_m, GAUGE_M, 1.0, MotionNoise()).pose()
 
 
 def test_on_track_and_on_course_the_belts_run_alike() -> None:
@@ -85,15 +87,15 @@ def test_a_planned_leg_never_ends_beyond_the_margin(x: float, y: float, heading:
 @given(st.floats(-math.pi, math.pi))
 def test_a_turn_ends_at_the_angle_asked(angle: float) -> None:
     at = pose(0.0, 0.0, 0.3)
-    motion = prediction.start(at, MotionNoise())
+    motion = start(at, MotionNoise())
     turned = after(at, guidance.turn(motion, angle, GAUGE_M))
-    assert prediction.wrap_rad(turned.heading_rad - 0.3 - angle) == pytest.approx(0.0, abs=1e-9)
+    assert wrap_rad(turned.heading_rad - 0.3 - angle) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_lazy_track_is_fed_forward() -> None:
-    motion = prediction.adopt(prediction.start(pose(0, 0, 0), MotionNoise()), prediction.DRIFT, 0.2, 0.01)
+    motion = correction.reset_parameter(start(pose(0, 0, 0), MotionNoise()), DRIFT, 0.2, 0.01)
     belts = guidance.straight(motion, 0.1, 0.0, GAUGE_M)
-    moved = prediction.predict(motion, belts.left_m, belts.right_m, GAUGE_M, 1.0, MotionNoise())
+    moved = predict(motion, belts.left_m, belts.right_m, GAUGE_M, 1.0, MotionNoise())
     assert moved.pose().heading_rad == pytest.approx(0.0, abs=1e-9)
     assert belts.left_m > belts.right_m
 

@@ -23,11 +23,10 @@ from executive.core.values import (
     SEGMENT,
     TEXT,
 )
-from executive.isc.classification import Assessment
-from executive.pool.pool import Situation
+from executive.isc import Assessment, Readings
+from executive.pool import Situation
 from executive.tree.build import build
 from executive.tree.load import load_tree_text
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import (
     FromTree,
     In,
@@ -35,6 +34,7 @@ from executive.tree.nodes.base import (
     Leaf,
     Out,
 )
+from executive.tree.nodes.kind import leaves
 
 
 class Act(Leaf):
@@ -98,7 +98,7 @@ class Pose(Leaf):
         return Outcome(Reason.DONE)
 
 
-TEST_LEAVES: dict[str, type[Leaf]] = LEAVES | {
+TEST_LEAVES: dict[str, type[Leaf]] = leaves() | {
     "act": Act,
     "note": Note,
     "visit": Visit,
@@ -134,8 +134,12 @@ def services(pool: Any = None) -> Any:
             tracks=SimpleNamespace(stop=lambda: None),
             cabin=SimpleNamespace(read=lambda: CabinReading(0.0, 0.0, 0.0, False)),
         ),
-        classification=SimpleNamespace(predicted=lambda: pose, assess=lambda pose, segment: assessment),
-        journal=SimpleNamespace(assessment=lambda assessment: None),
+        classification=SimpleNamespace(
+            predicted=lambda: pose,
+            extrapolate=lambda pose, segment: assessment,
+            tracker=SimpleNamespace(readings=Readings()),
+        ),
+        journal=SimpleNamespace(),
     )
 
 

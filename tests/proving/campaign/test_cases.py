@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from proving.campaign.cases import case_number, prepared, resolved, seed_of
+from proving.inject import INSTRUMENT
 from tests.proving.campaign.conftest import INLINE, VARY
 
 TWO = {"as_it_is": {}, "slow": {"world.advance": 0.5}}
@@ -62,7 +63,7 @@ def test_so_many_faults_are_drawn_beside_the_scenarios_own(load, planted):
     faults = {"number": {"integer": [0, 2]}, "from": [{"harmless": {}}, {"raise_error": {}}, DEAD]}
     own = INLINE | {"faults": [{"frozen_frame": {}, "for": "10 s"}]}
     campaign = load(scenario=own, faults=faults)
-    drawn = [resolved(campaign, case_number(campaign, n)).faults for n in range(30)]
+    drawn = [resolved(campaign, case_number(campaign, n)).of(INSTRUMENT) for n in range(30)]
     assert {len(each) for each in drawn} == {1, 2, 3}
     assert all(each[0].name == "frozen_frame" for each in drawn)
     assert {fault.name for each in drawn for fault in each[1:]} == {"harmless", "raise_error", "dead"}

@@ -20,7 +20,7 @@ from executive.core.types import (
     Shot,
     Window,
 )
-from executive.inject.faults import Cue, Fault
+from executive.run.fault import Cue, Fault
 from executive.testing.fake import FakeBackend, FakeWorld
 
 ROUTE = (Segment(Point(3.0, 0.0), Point(4.0, 0.0), 0.03, 0.25, 0.03),)

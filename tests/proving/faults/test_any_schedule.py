@@ -8,8 +8,8 @@ from typing import Any
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from executive.core import plugins
-from executive.inject.faults import FaultSpec
+from executive.core import registry
+from executive.run.fault import FAULT_KIND, FaultSpec
 from tests.proving.faults.scenario import run
 
 OUTCOMES = {"reached", "safe_hold", "help", "time_limit", "invalid", "error"}
@@ -89,7 +89,7 @@ def schedules() -> st.SearchStrategy[list[dict[str, Any]]]:
 
 
 def test_every_fault_of_ports_and_executive_takes_part() -> None:
-    specs = {name: plugins.load(plugins.FAULTS, name, FaultSpec) for name in plugins.found(plugins.FAULTS)}
+    specs = {name: registry.get(FAULT_KIND, name) for name in registry.names(FAULT_KIND)}
     anywhere = {name for name, spec in specs.items() if isinstance(spec, FaultSpec) and not spec.backends}
     assert set(PARAMETERS) == anywhere - KILLS
 

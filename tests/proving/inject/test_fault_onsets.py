@@ -8,9 +8,9 @@ from executive.core.types import (
     PoseEstimate,
     Reason,
 )
-from executive.inject.onsets import Onset, Sightings
-from executive.inject.triggers import Trigger
 from executive.record import events
+from proving.inject.onsets import Onset, Sightings
+from proving.inject.triggers import Trigger
 
 
 def telemetry(tilt_rad):

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from executive.inject.profiles import Profile, Shape
+from proving.inject.profiles import Profile, Shape
 
 
 def shape(seed=0, **profile):

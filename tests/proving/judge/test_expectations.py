@@ -7,11 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from executive.config.expect import Expect
 from executive.core.rig import RigCalibration
 from executive.core.types import Point, Segment
-from executive.judge.expectations import judge
-from executive.judge.safety import safety_rows
 from executive.record import (
     History,
     Recorder,
@@ -31,7 +28,11 @@ from executive.record.events import (
     Verdict,
 )
 from executive.record.rows import first_violated, row, worst_first
-from executive.run.app import _exit_code
+from executive.run.judging import exit_code
+from proving.judge.expect import Expect
+from proving.judge.expectations import judge
+from proving.judge.instrument import met as as_it_should_be
+from proving.judge.safety import safety_rows
 
 SEGMENT = Segment(Point(0.0, 0.0), Point(1.0, 0.0), 0.03, 0.10, 0.02, 0)
 
@@ -222,8 +223,9 @@ def test_a_row_says_nothing_that_json_cannot(tmp_path):
     ],
 )
 def test_the_exit_code_stands_for_expectations_and_safety(outcome, expected, met, safe, code):
-    result = {"outcome": outcome, "expectations": [{"met": m} for m in met], "safety": [{"met": safe}]}
-    assert _exit_code(Expect(outcome=expected), result) == code
+    rows = [row("as expected", each) for each in met]
+    found = as_it_should_be(Expect(outcome=expected), outcome, rows, [row("safe", safe)])
+    assert exit_code(outcome, found) == code
 
 
 def test_mission_time_and_path_lie_between_their_bounds(story):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from proving.engine import Case, CaseClass, Ending
-from proving.verdict import Terms, Word, judged, repeat_command
+from proving.judge.verdict import Terms, Word, judged, repeat_command
 
 CASE = Case("short", Path("short.yaml"), Path("out"), seed=3, overrides=("world.advance=0.9",))
 OK = Ending(CASE, CaseClass.OK)

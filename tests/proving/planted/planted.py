@@ -9,7 +9,7 @@ import signal
 
 from pydantic import BaseModel, ConfigDict
 
-from executive.inject.faults import Fault, FaultSpec
+from executive.run.fault import Fault, FaultSpec
 
 
 class Nothing(BaseModel):

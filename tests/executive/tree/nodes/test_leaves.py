@@ -23,13 +23,12 @@ from executive.core.types import (
     TetherReading,
     TiltReading,
 )
-from executive.isc.classification import Classification
-from executive.isc.prediction import quat_from_heading_tilt
-from executive.pool.pool import Pool
+from executive.isc import Classification, known_channels, known_hypotheses
+from executive.isc.attitude import quat_from_heading_tilt
+from executive.pool import Pool
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.testing import FakeBackend, FakeWorld, OverheadLocalizer
-from executive.tree.nodes import LEAVES
 from executive.tree.nodes.base import (
     Constant,
     Leaf,
@@ -37,6 +36,7 @@ from executive.tree.nodes.base import (
     Store,
     Trace,
 )
+from executive.tree.nodes.kind import leaves
 from executive.tree.nodes.services import Services
 
 SEGMENT = Segment(Point(2.0, 0.0), Point(3.0, 0.0), 0.03, 0.25, 0.03)
@@ -79,7 +79,15 @@ class Bench:
             np.diag([1e-6] * 6),
             PoseSource.PRIOR,
         )
-        return Classification(prior, self.backend.rig, self.backend.clock)
+        return Classification(
+            prior,
+            self.backend.rig,
+            self.backend.clock,
+            known_hypotheses(),
+            known_channels(),
+            self.journal.assessment,
+            markers_expected=4,
+        )
 
     def run(self, kind: str, values: Mapping[str, object]) -> Outcome[object]:
         """Tick the leaf to its end; its outcome. The same one if it ran before."""
@@ -94,19 +102,19 @@ class Bench:
         )
         given = {"pose": self.classification.predicted().on(SEGMENT), "segment": SEGMENT, **values}
         bindings = {}
-        for port in LEAVES[kind].ports():
+        for port in leaves()[kind].ports():
             if port.direction.value == "in":
                 bindings[port.name] = Constant(given.get(port.name, port.default))
             else:
                 bindings[port.name] = Slot(self.store, port.name)
                 bindings[port.name].write(given.get(port.name))
         if kind not in self.leaves:
-            self.leaves[kind] = LEAVES[kind](kind, kind, services, bindings, self.trace)
+            self.leaves[kind] = leaves()[kind](kind, kind, services, bindings, self.trace)
         leaf = self.leaves[kind]
         ended: list[Outcome[object]] = []
         self.trace.note = lambda path, outcome: ended.append(outcome)
         for _ in range(PATIENCE_TICKS):
-            self.classification.sense(self.backend.devices)
+            self.classification.tracker.sense(self.backend.devices)
             leaf.tick_once()
             if ended:
                 break
@@ -157,7 +165,7 @@ def drifting(bench: Bench) -> None:
 
 def anomalous(bench: Bench) -> None:
     for _ in range(4):
-        bench.classification.failed(Outcome(Reason.BLOCKED))
+        bench.classification.on_failure(Outcome(Reason.BLOCKED))
 
 
 def turned(bench: Bench) -> None:
@@ -210,7 +218,7 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("localise", Reason.DONE, nothing, {}),
     *(
         ("localise", reason, sees(reason), {"quality": Quality.PRECISE})
-        for reason in LEAVES["localise"].outcomes
+        for reason in leaves()["localise"].outcomes
         if reason is not Reason.DONE
     ),
     ("not_overshot", Reason.DONE, nothing, {"target": AHEAD, "within": 0.03}),
@@ -266,5 +274,5 @@ def test_a_leaf_ends_for_the_reason_it_declares(
 
 
 def test_every_declared_outcome_of_every_leaf_has_its_case() -> None:
-    declared = {(name, reason) for name, leaf in LEAVES.items() for reason in leaf.outcomes}
+    declared = {(name, reason) for name, leaf in leaves().items() for reason in leaf.outcomes}
     assert {(kind, reason) for kind, reason, *_ in CASES} == declared

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from executive.judge.temporal.atoms import Atom
-from executive.judge.temporal.formula import (
+from proving.judge.temporal.atoms import Atom
+from proving.judge.temporal.formula import (
     Always,
     And,
     Eventually,

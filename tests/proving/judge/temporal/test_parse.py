@@ -3,8 +3,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from executive.core.chance import generator
-from executive.judge.temporal import names, parse_formula
-from executive.judge.temporal.formula import (
+from executive.tree.expressions.typed import GuardError
+from proving.judge.temporal import names, parse_formula
+from proving.judge.temporal.formula import (
     Always,
     And,
     Bounds,
@@ -14,7 +15,6 @@ from executive.judge.temporal.formula import (
     Or,
     Until,
 )
-from executive.tree.expressions.typed import GuardError
 from tests.proving.judge.temporal.random_formulas import TYPES, formula
 
 WORDS = ["always", "eventually", "until", "not", "and", "or", "implies", "->", "(", ")", "[0 s, 1 s]"]

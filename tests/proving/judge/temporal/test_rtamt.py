@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from executive.core.chance import generator
-from executive.judge.temporal import on_one_grid, parse_formula
-from executive.judge.temporal.semantics import Margins, evaluate
+from proving.judge.temporal import on_one_grid, parse_formula
+from proving.judge.temporal.semantics import Margins, evaluate
 from tests.proving.judge.temporal.random_formulas import TYPES, formula
 
 rtamt = pytest.importorskip("rtamt", reason="rtamt, which is only needed to be compared with, is not there")

@@ -4,9 +4,9 @@ import pytest
 from executive.core.chance import generator
 from executive.core.clock import Stopwatch
 from executive.core.values import FLAG, LENGTH, NUMBER
-from executive.judge.temporal import judge, on_one_grid, parse_formula
-from executive.judge.temporal.semantics import Decisions, Margins, evaluate
-from executive.judge.temporal.trace import Trace
+from proving.judge.temporal import judge, on_one_grid, parse_formula
+from proving.judge.temporal.semantics import Decisions, Margins, evaluate
+from proving.judge.temporal.trace import Trace
 from tests.proving.judge.temporal.direct import value
 from tests.proving.judge.temporal.random_formulas import TYPES, formula
 

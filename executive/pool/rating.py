@@ -1,0 +1,56 @@
+"""How well a strategy fits a situation, and what forbids it there."""
+
+from __future__ import annotations
+
+from executive.core.errors import StrategyRaised
+from executive.pool.memory import Memory
+from executive.pool.situation import Situation
+from executive.pool.strategy import Strategy
+
+LEAST_WEIGHT = 0.02  # a hypothesis below this is no reason to act
+LEAST_FITNESS = 0.1  # below this a remedy is a shot in the dark; ground decides better
+
+
+def relevance(strategy: Strategy, situation: Situation) -> float:
+    """How well it answers what is likely and what failed."""
+    weights = situation.assessment.weights
+    explained = sum(weights[h] * a for h, a in strategy.answers.items() if weights[h] >= LEAST_WEIGHT)
+    return explained + strategy.reasons.get(situation.failure.reason, 0.0)
+
+
+def worthwhile_s(situation: Situation) -> float:
+    """The cost that halves a strategy's fitness: much remains to be driven, then little is worth it."""
+    offset = situation.pose.on(situation.segment).track
+    remaining_m = offset.remaining_m if offset else 1.0
+    return 1200.0 / (1.0 + remaining_m)
+
+
+def refusal(strategy: Strategy, situation: Situation, memory: Memory) -> str | None:
+    """What forbids it here, whatever it is good for; None if nothing does."""
+    return _no_room(strategy, situation) or _tried(strategy, situation, memory) or _needs(strategy, situation)
+
+
+def _no_room(strategy: Strategy, situation: Situation) -> str | None:
+    segment, offset = situation.segment, situation.pose.on(situation.segment).track
+    if segment is None or offset is None:
+        return None
+    if abs(offset.cross_m) >= segment.off_track_m:
+        return "beyond the off-track margin any autonomous correction is forbidden"
+    room = segment.off_track_m - abs(offset.cross_m) - 2 * situation.pose.sigma_across_m(segment)
+    if strategy.excursion_m > max(room, 0.0):  # to stay where it is a rover needs no room
+        return f"may leave the margin: needs {strategy.excursion_m:.2f} m, has {room:.2f} m"
+    return None
+
+
+def _tried(strategy: Strategy, situation: Situation, memory: Memory) -> str | None:
+    if memory.failed_here(strategy.name, situation):
+        return "did not help here before"
+    tries = memory.tries(strategy.name, situation.segment)
+    return f"tried {tries} times on this segment" if tries >= strategy.tries_per_segment else None
+
+
+def _needs(strategy: Strategy, situation: Situation) -> str | None:
+    try:
+        return strategy.needs(situation)
+    except Exception as error:
+        raise StrategyRaised(strategy.name, error) from error

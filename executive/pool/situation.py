@@ -1,0 +1,26 @@
+"""All that a choice may rest on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from executive.core.types import Outcome, PoseEstimate, Segment
+from executive.isc import Assessment, Readings
+
+
+@dataclass(frozen=True)
+class Situation:
+    """What failed, what the classification makes of it, where the rover is, and what its devices read."""
+
+    time_s: float
+    failure: Outcome[object]
+    assessment: Assessment
+    pose: PoseEstimate
+    segment: Segment | None
+    readings: Readings = field(default_factory=Readings)
+
+    @property
+    def along_m(self) -> float | None:
+        """The place along the segment; None where there is no segment."""
+        track = self.pose.on(self.segment).track
+        return track.along_m if track else None

@@ -1,0 +1,132 @@
+"""The catalogue: what there is of each kind, told from the declarations themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from pydantic import BaseModel
+
+from executive.config.describe import Parameter, properties
+from executive.core import registry
+from executive.core.registry import Broken, Kind
+from executive.tree.catalogue import NodeType, node_types
+from executive.tree.nodes.base import REQUIRED, FromTree, PortSpec
+from executive.tree.nodes.kind import LEAF_KIND
+
+ANYWHERE = ("tiers", "backends")  # where nothing is said, all of them
+Page = dict[str, Any]
+
+
+def entries(listing: str) -> dict[str, Page]:
+    """Name → what there is to say of it; what is broken is left out (`broken`)."""
+    if listing == "nodes":
+        return {name: _node(node) for name, node in sorted(node_types().items())}
+    if listing == "plugins":
+        return _plugins()
+    kind = _kind(listing)
+    return {name: _page(kind, thing) for name, thing in registry.every(kind).items()}
+
+
+def broken(listing: str) -> tuple[Broken, ...]:
+    """What a listing leaves out, and why."""
+    if listing == "plugins":
+        kinds = [registry.broken(kind) for kind in registry.kinds()]
+        return tuple(dict.fromkeys((*registry.broken_kinds(), *(b for of_kind in kinds for b in of_kind))))
+    return registry.broken(LEAF_KIND if listing == "nodes" else _kind(listing))
+
+
+def _kind(listing: str) -> Kind[Any]:
+    return next(kind for kind in registry.kinds() if kind.plural == listing.replace("-", "_"))
+
+
+def _page(kind: Kind[Any], thing: Any) -> Page:
+    return dict(kind.page(thing)) if kind.page is not None else _fields(thing)
+
+
+def _plugins() -> dict[str, Page]:
+    """Package or file → how many of each kind it adds, and their names."""
+    found: dict[str, Page] = {}
+    for kind in registry.kinds():
+        for name, entry in registry.entries(kind.plural).items():
+            found.setdefault(entry.origin(), {}).setdefault(kind.plural, []).append(name)
+    for module in registry.modules():
+        found.setdefault(module.source, {})
+    return {
+        origin: {"doc": ", ".join(f"{len(names)} {plural}" for plural, names in adds.items())} | adds
+        for origin, adds in sorted(found.items())
+    }
+
+
+def _node(node: NodeType) -> Page:
+    return {
+        "category": node.category,
+        "doc": node.doc,
+        "children": node.children,
+        "ports": [_port(port) for port in node.ports],
+    }
+
+
+def _port(port: PortSpec) -> Page:
+    told: Page = {
+        "name": port.name,
+        "type": port.type.name,
+        "direction": port.direction.value,
+        "help": port.help,
+        "required": port.default is REQUIRED,
+    }
+    if isinstance(port.default, FromTree):
+        told["default"] = f"{{{port.default.name}}}"
+    elif port.default is not REQUIRED:
+        told["default"] = (
+            port.default if isinstance(port.default, int | float | str | None) else str(port.default)
+        )
+    return told
+
+
+def _fields(thing: object) -> Page:
+    """A declaration's own fields, as far as JSON can say them; models by their schema."""
+    ports = getattr(thing, "ports", None)
+    doc = " ".join((thing.__doc__ or "").strip().split("\n\n")[0].split())
+    if isinstance(thing, type) and callable(ports):
+        return {"doc": doc, "ports": [_port(port) for port in ports()]}
+    if isinstance(thing, type) or not is_dataclass(thing):
+        return {"doc": doc}
+    return {f.name: _plain(getattr(thing, f.name)) for f in fields(thing) if f.name != "name"}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, type) and issubclass(value, BaseModel):
+        return properties(value)
+    if isinstance(value, int | float | str | None):
+        return value
+    if isinstance(value, Mapping):
+        return {str(_plain(k)): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple | set | frozenset):
+        return [_plain(part) for part in value]
+    return getattr(value, "__name__", None) or str(value)
+
+
+def as_text(name: str, entry: Page) -> str:
+    """One entry for people: its doc, then a line per port, parameter or field."""
+    lines = [name + (f"  ({entry['category']})" if "category" in entry else ""), f"  {entry.get('doc', '')}"]
+    lines += [_port_line(port) for port in entry.get("ports", ())]
+    lines += [_parameter_line(Parameter(**given)) for given in entry.get("parameters", ())]
+    told = ("doc", "category", "ports", "children", "parameters", *(("model",) * ("parameters" in entry)))
+    for key, value in entry.items():
+        if key in ANYWHERE and not value:
+            lines.append(f"  {key}: any")
+        elif key not in told and value is not False and value not in (None, [], {}, ""):
+            lines.append(f"  {key}: {', '.join(value) if isinstance(value, list | dict) else value}")
+    return "\n".join(lines) + "\n"
+
+
+def _port_line(port: Page) -> str:
+    default = "" if port["required"] else f", default {port.get('default')}"
+    return f"  {port['direction']:5} {port['name']}: {port['type']}{default}   {port['help']}"
+
+
+def _parameter_line(parameter: Parameter) -> str:
+    default = "required" if parameter.required else f"default {parameter.default}"
+    return f"  {parameter.name}: {parameter.kind}, {default}   {parameter.doc}"
