@@ -2,6 +2,7 @@
 
 from executive.testing.check_backend import check_backend
 from executive.testing.check_diagnosis import check_channel, check_hypothesis
+from executive.testing.check_localizer import check_localizer
 from executive.testing.check_strategy import check_strategy
 from executive.testing.fake import BACKEND, OVERHEAD, FakeBackend, FakeWorld, OverheadLocalizer
 
@@ -14,5 +15,6 @@ __all__ = [
     "check_backend",
     "check_channel",
     "check_hypothesis",
+    "check_localizer",
     "check_strategy",
 ]

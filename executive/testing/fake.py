@@ -288,8 +288,14 @@ class _Located:
     taking: Action[Images | Centres]
     rig: RigCalibration
     source: str
+    outcome: Outcome[Localisation] | None = None
 
     def poll(self) -> Outcome[Localisation] | None:
+        if self.outcome is None:
+            self.outcome = self._looked()
+        return self.outcome
+
+    def _looked(self) -> Outcome[Localisation] | None:
         outcome = self.taking.poll()
         if outcome is None:
             return None

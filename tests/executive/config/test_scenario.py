@@ -106,8 +106,9 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
         'scenarios/dark.yaml:11:19: got "reachd", expected reached, safe_hold, help, time_limit or error; '
         'did you mean "reached"?',
         "scenarios/dark.yaml:11:35: got an angle, expected something true or false",
-        'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, project, mission, '
-        'seed, tier, backend, localizer, policy, world, rig, time_limit or ...; did you mean "time_limit"?',
+        'scenarios/dark.yaml:12:1: got the unknown key "timelimit", expected scenario, doc, project, '
+        "mission, seed, tier, backend, localizer, policy, world, rig, time_limit or ...; "
+        'did you mean "time_limit"?',
     ]
 
 
