@@ -29,7 +29,7 @@ def main(cases: int) -> None:
 def tell(folder: Path, run: Path, cases: int) -> None:
     """Write a campaign folder whose cases share one run's record and differ in how they ended."""
     scenario = Path("scenarios/marker_out.yaml")
-    result = app.run(scenario, app.RunOptions(out=run, tier="geometric", bar=False)).result
+    result = app.run(scenario, app.RunOptions(out=run, tier="geometric", bar=False)).result.to_json()
     rng = generator(1, "told campaign")
     (folder / "cases").mkdir(parents=True)
     (folder / "campaign.json").write_text(

@@ -24,7 +24,7 @@ TIERS, SEEDS = ("geometric", "full"), range(5)
 def digest(tier: str, seed: int) -> str:
     with tempfile.TemporaryDirectory() as folder:
         options = app.RunOptions(seed=seed, out=Path(folder) / "run", tier=tier, bar=False)
-        return str(app.run(MISSION, options).result["digest"])
+        return app.run(MISSION, options).result.digest
 
 
 def main() -> int:

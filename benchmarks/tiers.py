@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from executive.config.backends import BackendRequest
+from executive.core.devices import HEAD
 from executive.core.ports import LocaliseRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -60,7 +61,7 @@ def errors(range_m: float, tier: str, fixes: int) -> tuple[np.ndarray, np.ndarra
     )
     found, nees = [], []
     for _ in range(fixes):
-        wait(backend, backend.devices.head.point(0.1, 0.1))
+        wait(backend, backend.devices[HEAD].point(0.1, 0.1))
         outcome = wait(backend, localizer.locate(LocaliseRequest(Quality.PRECISE, prior)))
         if not outcome.ok:
             continue

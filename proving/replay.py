@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from executive.record.divergence import Divergence
+    from executive.record import Divergence
     from proving.engine import Limits
 
 
@@ -31,7 +31,7 @@ class Comparison:
 
 @click.command()
 @click.argument("run_dir", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="Keep the new run here.")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder to keep the new run in.")
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON and nothing else.")
 def replay(run_dir: Path, out: Path | None, as_json: bool) -> int:
     """Run the scenario of a run folder again; say whether it came out bit for bit the same.
@@ -48,8 +48,7 @@ def replay(run_dir: Path, out: Path | None, as_json: bool) -> int:
 def compare(folder: Path, out: Path | None, limits: Limits) -> Comparison:
     """Run `folder`'s scenario again, into `out` if it is to be kept. RecordError if there is no record."""
     from executive.core.errors import RecordError
-    from executive.record.digest import digest
-    from executive.record.divergence import first_divergence
+    from executive.record import digest, first_divergence
     from proving.engine import Case, CaseClass, run_cases, settle
 
     scenario, record = folder / "scenario.yaml", folder / "record.mcap"

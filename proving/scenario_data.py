@@ -9,8 +9,8 @@ import yaml
 
 from executive.config.source import read_text
 from executive.core.errors import ConfigError
+from executive.run import ResolvedScenario
 from executive.run.resolve import resolve_source
-from executive.run.resolved import ResolvedScenario
 
 Data = dict[str, Any]
 Keys = tuple[str | int, ...]

@@ -6,6 +6,7 @@ from pydantic import BaseModel
 
 from executive.config.backends import BackendRequest, BackendSpec, WorldProblem
 from executive.core.ports import Backend
+from executive.core.rig import RigCalibration
 from executive.core.types import Segment
 from sim_pybullet.config import WorldConfig
 
@@ -35,6 +36,8 @@ BACKEND = BackendSpec(
     doc="The rover, the ground and the lander's head in PyBullet, with images in linear radiometry.",
     world_model=WorldConfig,
     tiers=("full", "geometric"),
+    devices=("tracks", "cabin", "head", "cameras", "inclinometer", "tether", "link"),
+    rig=RigCalibration,
     create=_create,
     problems=_problems,
     preload=_preload,

@@ -9,6 +9,7 @@ from typing import Protocol
 from executive.config.backends import BackendRequest
 from executive.core.chance import generator
 from executive.core.clock import Clock, Stopwatch
+from executive.core.devices import CABIN, CAMERAS, HEAD, INCLINOMETER, LINK, TETHER, TRACKS
 from executive.core.errors import LongarmError
 from executive.core.ports import Cameras, Devices
 from executive.core.rig import RigCalibration
@@ -45,6 +46,8 @@ class SimBackend:
     def __init__(self, request: BackendRequest, make: CameraMaker) -> None:
         if not isinstance(request.world, WorldConfig):
             raise LongarmError(f"got a world of type {type(request.world).__name__}, expected a WorldConfig")
+        if not isinstance(request.rig, RigCalibration):
+            raise LongarmError(f"got a rig of type {type(request.rig).__name__}, expected a RigCalibration")
         self.rig = _rig_of(request.rig, request.world)
         self.clock = Clock(request.tick_s)
         self._watch = Stopwatch()
@@ -59,13 +62,13 @@ class SimBackend:
         self._link = SimLink(self.clock)
         self.world_faults = WorldFaults(self.world, self._cameras.log)
         self.devices = Devices(
-            tracks=self.world.tracks,
-            cabin=self.world.cabin,
-            head=self.world.head,
-            cameras=self._cameras,
-            inclinometer=self.world.inclinometer,
-            tether=self.world.tether,
-            link=self._link,
+            TRACKS.fit(self.world.tracks),
+            CABIN.fit(self.world.cabin),
+            HEAD.fit(self.world.head),
+            CAMERAS.fit(self._cameras),
+            INCLINOMETER.fit(self.world.inclinometer),
+            TETHER.fit(self.world.tether),
+            LINK.fit(self._link),
         )
 
     def advance(self) -> None:

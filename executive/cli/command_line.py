@@ -102,18 +102,19 @@ def run(
     """
     from executive.cli import summary
     from executive.run import app
+    from executive.run.instruments import broken_instruments
     from executive.tree.strategies import broken_strategies
 
-    for broken in () if quiet else broken_strategies():
-        click.echo(f"longarm: the pool does without {broken}", err=True)
+    for broken in () if quiet else (*broken_strategies(), *broken_instruments()):
+        click.echo(f"longarm: the run does without {broken}", err=True)
     finished = app.run(file, app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json)))
     if as_json:
-        click.echo(json.dumps(finished.result, indent=2))
+        click.echo(json.dumps(finished.result.to_json(), indent=2))
     elif not quiet:
         summary.show(finished)
     if finished.exit_code == DEFECT:
         where = finished.folder / "traceback.txt"
-        click.echo(f"longarm: a defect: {finished.result['reason']} ({where})", err=True)
+        click.echo(f"longarm: a defect: {finished.result.reason} ({where})", err=True)
     return finished.exit_code
 
 

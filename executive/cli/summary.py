@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from executive.record.rows import worst_first
+from executive.record import RunResult
+from executive.record.rows import JudgedRow, worst_first
 from executive.run.app import Finished
 
 
@@ -17,49 +15,46 @@ def show(finished: Finished) -> None:
     """Print how the run ended, its key figures, what was tried, and where the report is."""
     console, result = Console(), finished.result
     colour = "green" if finished.exit_code == 0 else "red"
-    why = f": {result['reason']}" if result["reason"] else ""
-    console.print(f"[bold {colour}]{result['outcome']}[/]{why}", highlight=False)
+    why = f": {result.reason}" if result.reason else ""
+    console.print(f"[bold {colour}]{result.outcome}[/]{why}", highlight=False)
     table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
     for name, value in _figures(result):
         table.add_row(name, value)
     console.print(table)
-    for row in worst_first(result["expectations"]):
+    for row in worst_first(result.expectations):
         console.print(f"  {_verdict(row)}  {escape(_told(row))}", highlight=False, soft_wrap=True)
-    for row in worst_first(row for row in result["safety"] if row["met"] is False):
+    for row in worst_first(row for row in result.safety or () if row.met is False):
         console.print(f"  [red]unsafe[/]   {escape(_told(row))}", highlight=False, soft_wrap=True)
     console.print(f"report: {finished.folder / 'report.html'}", highlight=False, soft_wrap=True)
 
 
-def _verdict(row: Mapping[str, Any]) -> str:
-    return "[green]met[/]    " if row["met"] else "[red]not met[/]"
+def _verdict(row: JudgedRow) -> str:
+    return "[green]met[/]    " if row.met else "[red]not met[/]"
 
 
-def _told(row: Mapping[str, Any]) -> str:
+def _told(row: JudgedRow) -> str:
     """The expectation; where it is not met, since when and by how much; and what to doubt of it."""
-    found = [row["text"]]
-    if row["t_violation_s"] is not None:
-        found.append(f"from {row['t_violation_s']:.0f} s")
-    if row["met"] is False and row["robustness"] is not None:
-        found.append(f"by {-row['robustness']:.3g} {row['unit']}".rstrip())
-    if row["warning"]:
-        found.append(row["warning"])
+    found = [row.text]
+    if row.t_violation_s is not None:
+        found.append(f"from {row.t_violation_s:.0f} s")
+    if row.met is False and row.robustness is not None:
+        found.append(f"by {-row.robustness:.3g} {row.unit}".rstrip())
+    if row.warning:
+        found.append(row.warning)
     return ", ".join(found)
 
 
-def _figures(result: dict[str, Any]) -> list[tuple[str, str]]:
-    truth, seen, points = result["truth"], result["localisation"], result["waypoints"]
-    tried = ", ".join(row["name"] for row in result["strategies"]) or "none"
+def _figures(result: RunResult) -> list[tuple[str, str]]:
+    truth, seen = result.truth, result.localisation
+    tried = ", ".join(row.name for row in result.strategies) or "none"
     return [
-        ("way-points", f"{points['reached']} of {points['total']}"),
-        ("true error at the end", _length(truth["final_error_m"])),
-        ("driven beyond the margin", _length(truth["driven_beyond_off_track_m"])),
-        (
-            "localisations",
-            f"{seen['count']}, {seen['failed']} failed, rmse {_length(seen['position_rmse_m'])}",
-        ),
+        ("way-points", f"{result.waypoints.reached} of {result.waypoints.total}"),
+        ("true error at the end", _length(truth.final_error_m)),
+        ("driven beyond the margin", _length(truth.driven_beyond_off_track_m)),
+        ("localisations", f"{seen.count}, {seen.failed} failed, rmse {_length(seen.position_rmse_m)}"),
         ("strategies tried", tried),
-        ("mission time", f"{result['mission_s'] / 60:.1f} min"),
-        ("wall time", f"{result['wall_s']:.1f} s"),
+        ("mission time", f"{result.mission_s / 60:.1f} min"),
+        ("wall time", f"{result.wall_s or 0.0:.1f} s"),
     ]
 
 

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from executive.config.source import Place
 from executive.core.ports import Backend
 from executive.core.registry import Kind
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import Segment
 
 
@@ -19,15 +19,16 @@ from executive.core.types import Segment
 class BackendRequest:
     """All that a backend is told: nothing of the tree, nothing of the expectations.
 
-    `world` is an instance of the backend's own `world_model`; `route` is the plan as ground uplinked it;
-    `truth_path` is where a simulation writes its truth (None: nowhere); `tick_s` the length of a tick [s].
+    `world` is an instance of the backend's own `world_model`, `rig` one of its own rig; `route` is the plan
+    as ground uplinked it; `truth_path` is where a simulation writes its truth (None: nowhere);
+    `tick_s` the length of a tick [s].
     """
 
     world: BaseModel
     route: tuple[Segment, ...]
     seed: int
     tier: str
-    rig: RigCalibration
+    rig: Rig
     truth_path: Path | None
     tick_s: float
 
@@ -51,7 +52,10 @@ def nothing_to_load() -> None:
 
 @dataclass(frozen=True)
 class BackendSpec:
-    """A backend by name: its world's schema, the tiers it can play, and how to make one.
+    """A backend by name: its world's schema, the tiers it can play, its devices, and how to make one.
+
+    `devices` are names of registered devices, one of them a drive: what trees need is held against them.
+    `rig` is a frozen dataclass whose fields all have defaults; a scenario's `rig:` may replace each of them.
 
     `problems` tells, before anything is made or written, why a world cannot be made for a route. `preload`
     imports what `create` needs, for a process that is about to make many.
@@ -61,6 +65,8 @@ class BackendSpec:
     doc: str
     world_model: type[BaseModel]
     tiers: tuple[str, ...]
+    devices: tuple[str, ...]
+    rig: type[Rig]
     create: Callable[[BackendRequest], Backend]
     problems: Callable[[BaseModel, tuple[Segment, ...]], tuple[WorldProblem, ...]] = no_problems
     preload: Callable[[], None] = nothing_to_load

@@ -16,7 +16,7 @@ from executive.core.clock import Clock
 from executive.core.errors import ConfigError
 from executive.core.ports import Devices, Localizer
 from executive.core.registry import Kind
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import PoseSource
 
 _PLACE = ("localizer",)
@@ -32,14 +32,14 @@ class LocalizerRequest:
     backend; `seed` is the scenario's, for a generator by name (executive.core.chance.generator)."""
 
     devices: Devices
-    rig: RigCalibration
+    rig: Any
     clock: Clock
     settings: BaseModel
     seed: int
     tier: str
 
 
-def no_markers(rig: RigCalibration) -> int:
+def no_markers(rig: Rig) -> int:
     """The `expected_markers` of a localizer that uses none."""
     return 0
 
@@ -58,7 +58,8 @@ class LocalizerSpec:
 
     `sources` are the names that its fixes bear as `PoseEstimate.source`, none of them one of the core's own
     (executive.core.types.PoseSource); `tiers` those it can work in (empty: any). `needs` names the devices
-    that it uses, `expected_markers` how many markers of a rig it looks for.
+    that it uses, `rig` the class of rig that it can work with, `expected_markers` how many markers of one it
+    looks for.
 
     `prepare` makes what is made once on a machine (`longarm prepare`, and before a run), and tells each step
     that takes long; it returns at once where that is done. `preload` does what every process would do anew at
@@ -72,7 +73,8 @@ class LocalizerSpec:
     settings: type[BaseModel] = NoSettings
     tiers: tuple[str, ...] = ()
     needs: tuple[str, ...] = ("cameras", "head")
-    expected_markers: Callable[[RigCalibration], int] = no_markers
+    rig: type[Any] = object
+    expected_markers: Callable[[Any], int] = no_markers
     prepare: Callable[[Callable[[str], None]], None] = nothing_to_prepare
     preload: Callable[[], None] = nothing_to_load
 
@@ -104,7 +106,7 @@ class ChosenLocalizer:
         given = self.settings.model_dump(mode="json", by_alias=True, exclude_none=True)
         return self.spec.name if self.settings == self.spec.settings() else {self.spec.name: given}
 
-    def made(self, devices: Devices, rig: RigCalibration, clock: Clock, seed: int, tier: str) -> Localizer:
+    def made(self, devices: Devices, rig: Rig, clock: Clock, seed: int, tier: str) -> Localizer:
         """A localizer for one run."""
         return self.spec.make(LocalizerRequest(devices, rig, clock, self.settings, seed, tier))
 

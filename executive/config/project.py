@@ -14,7 +14,7 @@ from typing import Annotated
 from pydantic import Field
 
 from executive.config.models import Name
-from executive.config.source import Source, read
+from executive.config.source import Mark, Source, read
 from executive.config.validate import Problems, Strict, parse
 from executive.core.errors import ConfigError
 from executive.core.registry import Project, current_project, project_file
@@ -76,8 +76,10 @@ def with_defaults(source: Source, project: Project | None) -> Source:
 
 def _source(file: Path) -> Source:
     working = Path.cwd()
-    source = read(file, str(file.relative_to(working)) if file.is_relative_to(working) else str(file))
-    return source if source.data is not None else Source({}, source.values, source.keys, source.folders)
+    name = str(file.relative_to(working)) if file.is_relative_to(working) else str(file)
+    if not any(line.partition("#")[0].strip() for line in file.read_text(errors="replace").splitlines()):
+        return Source({}, {(): Mark(name, 1, 1)}, folders={(): file.parent})  # its place alone says enough
+    return read(file, name)
 
 
 def _files(

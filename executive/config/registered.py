@@ -29,11 +29,11 @@ def check_registered(kind: Kind[Any], name: str, mark: Mark) -> None:
         what = f"the unknown {kind.name} {shown(name)}"
         expected = listed(known) or f"no {kind.name} at all, since none is installed"
         raise ConfigError(
-            [mark.problem(f"got {what}, expected {expected}{guess(name, known)}{not_loaded()}")]
+            [mark.problem(f"got {what}, expected {expected}{guess(name, known)}{not_loaded(kind)}")]
         )
 
 
-def not_loaded() -> str:
+def not_loaded(kind: Kind[Any] | None = None) -> str:
     """What a complaint about an unknown name adds: the plug-in modules that might have held it."""
-    broken = [f"; not loaded: {module}" for module in registry.broken_modules()]
+    broken = [f"; not loaded: {module}" for module in registry.broken_modules(kind)]
     return "".join(broken)

@@ -1,24 +1,21 @@
-"""`rig:` of a scenario: any number of the rig calibration replaced, by its name without the unit suffix.
+"""`rig:` of a scenario: any number of the backend's rig replaced, by its name without the unit suffix.
 
-The schema is made from the dataclasses of `executive.core.rig`, so a field added there can be set here.
+The schema is made from the backend's own dataclass, so a field added there can be set here.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from functools import cache
-from types import GenericAlias
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from types import GenericAlias, NoneType, UnionType
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel, create_model
 
 from executive.config.source import Place, Source
 from executive.config.validate import Strict, parse
 from executive.core import units
-from executive.core.rig import RigCalibration
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
+from executive.core.rig import Rig
 
 SUFFIXES = {
     "_rad_s": units.TURN_RATE,
@@ -30,21 +27,18 @@ SUFFIXES = {
 }
 
 
-def rig_from(source: Source, at: Place) -> RigCalibration:
-    """The rig with the overrides at `at` (there may be none)."""
+def rig_from(source: Source, at: Place, kind: type[Rig]) -> Rig:
+    """A rig of this kind with the overrides at `at` (there may be none)."""
     if not isinstance(source.data, dict) or "rig" not in source.data:
-        return RigCalibration()
-    given = parse(source, model_of(RigCalibration), at)
-    rig = _apply(RigCalibration(), given)
-    assert isinstance(rig, RigCalibration)  # noqa: S101  (what goes in comes out)
+        return kind()
+    rig: Rig = _apply(kind(), parse(source, model_of(kind), at))
     return rig
 
 
-def rig_fields(rig: DataclassInstance) -> dict[str, Any]:
-    """Every number of the rig as a file says it."""
-    return {
-        _key(field.name): _written(getattr(rig, field.name), field.name) for field in dataclasses.fields(rig)
-    }
+def rig_fields(rig: Any) -> dict[str, Any]:
+    """Every number of the rig as a file says it; what is None is left out."""
+    values = {field.name: getattr(rig, field.name) for field in dataclasses.fields(rig)}
+    return {_key(name): _written(value, name) for name, value in values.items() if value is not None}
 
 
 @cache
@@ -68,6 +62,9 @@ def _field_type(hint: Any, name: str) -> Any:
         return model_of(hint)
     if get_origin(hint) is tuple:
         return GenericAlias(tuple, tuple(_field_type(a, name) if a is not ... else a for a in get_args(hint)))
+    if isinstance(hint, UnionType):  # a number that there may be, as `float | None`
+        (there,) = (part for part in get_args(hint) if part is not NoneType)
+        return _field_type(there, name)
     if hint is float:
         suffix = next((s for s in SUFFIXES if name.endswith(s)), "")
         return Annotated[float, *units.of_kind(SUFFIXES[suffix])] if suffix else float

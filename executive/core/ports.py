@@ -6,12 +6,13 @@ A device that cannot do what was asked ends its action with the physical reason;
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 from executive.core.clock import Clock
-from executive.core.rig import RigCalibration
+from executive.core.device_spec import DeviceSpec, Fitted
+from executive.core.rig import Rig
 from executive.core.types import (
     CabinReading,
     Call,
@@ -30,6 +31,7 @@ from executive.core.types import (
     Vec2,
 )
 
+T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 
 
@@ -45,8 +47,8 @@ class Action(Protocol[T_co]):
         ...
 
 
-class Tracks(Protocol):
-    """The two tracks, driven by belt travel as their encoders count it."""
+class Drive(Protocol):
+    """Two tracks or rows of wheels, driven by travel as their encoders count it; "belts" stands for both."""
 
     def drive(self, left_m: float, right_m: float, speed_m_s: float) -> Action[TrackReading]:
         """Move the belts by these travels, both ending together; the faster one at `speed_m_s`.
@@ -106,17 +108,50 @@ class Link(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Devices:
-    """Every port of the robot. Fault wrappers replace fields of it."""
+class MissingDevice(LookupError):
+    """A device was asked for that this robot does not have; the message says which ones it has."""
 
-    tracks: Tracks
-    cabin: Cabin
-    head: Head
-    cameras: Cameras
-    inclinometer: Inclinometer
-    tether: Tether
-    link: Link
+
+class Devices:
+    """What a robot has: frozen, by name, and typed by spec: `devices[DRIVE].stop()`, `devices.get(TETHER)`.
+
+    A device that serves as another is found under both names. ValueError where two share a name.
+    """
+
+    def __init__(self, *fitted: Fitted) -> None:
+        """`Devices(TRACKS.fit(tracks), CAMERAS.fit(cameras))`."""
+        self._fitted: dict[str, Fitted] = {one.spec.name: one for one in fitted}
+        self._by_name: dict[str, Fitted] = {}
+        for one in fitted:
+            for name in one.spec.names:
+                if (other := self._by_name.setdefault(name, one)) is not one:
+                    raise ValueError(f"{other.spec.name} and {one.spec.name} both answer to {name!r}")
+
+    def __getitem__(self, spec: DeviceSpec[T]) -> T:
+        """The device; MissingDevice if this robot has none."""
+        one = self._by_name.get(spec.name)
+        if one is None:
+            has = ", ".join(sorted(self._fitted)) or "none"
+            raise MissingDevice(f"there is no device {spec.name!r} on this robot; it has {has}")
+        device: T = one.device
+        return device
+
+    def get(self, spec: DeviceSpec[T]) -> T | None:
+        """The device, None if this robot has none."""
+        return self[spec] if spec.name in self._by_name else None
+
+    def named(self, name: str) -> object:
+        """The device of this name; KeyError if there is none."""
+        return self._by_name[name].device
+
+    def __iter__(self) -> Iterator[Fitted]:
+        return iter(self._fitted.values())
+
+    def replace(self, spec: DeviceSpec[T], device: T) -> Devices:
+        """The same devices, this one in place of what answers to `spec`; MissingDevice if nothing does."""
+        self[spec]
+        there = self._by_name[spec.name]
+        return Devices(*(one.spec.fit(device) if one is there else one for one in self))
 
 
 class Backend(Protocol):
@@ -124,7 +159,11 @@ class Backend(Protocol):
 
     devices: Devices
     clock: Clock
-    rig: RigCalibration
+
+    @property
+    def rig(self) -> Rig:
+        """What it is built like, as the executive knows it."""
+        ...
 
     def advance(self) -> None:
         """Let one tick of mission time pass."""

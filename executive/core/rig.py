@@ -1,4 +1,7 @@
-"""The rig's calibration as values: cameras, head, markers, cabin joints. No projection code here.
+"""A rig's calibration as values: what the executive needs of any (`Rig`), and all of the first robot's.
+
+`RigCalibration` has cameras, head, markers and cabin joints, which simulation and perception of that robot
+share; no algorithm of the executive reads more than `Rig`. No projection code here.
 
 Simulation and perception each bring their own projection, so an error in one shows in the other.
 Angles in rad, lengths in m, image quantities in px. Frames: docs/frames.md.
@@ -8,9 +11,43 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 from executive.core.types import Vec2, Vec3
+
+
+class Vehicle(Protocol):
+    """The part of a rig that moves: its size, how it drives, and what it must never be exposed to.
+
+    `tether_limit_n` is None for a vehicle without a tether.
+    """
+
+    @property
+    def length_m(self) -> float: ...
+    @property
+    def width_m(self) -> float: ...
+    @property
+    def track_gauge_m(self) -> float:
+        """Distance between the middles of the belts, or of the wheels of both sides."""
+        ...
+
+    @property
+    def speed_m_s(self) -> float:
+        """Of the faster belt in a drive."""
+        ...
+
+    @property
+    def tilt_limit_rad(self) -> float: ...
+    @property
+    def tether_limit_n(self) -> float | None: ...
+
+
+class Rig(Protocol):
+    """What every backend's rig has, a frozen dataclass whose fields all have defaults."""
+
+    @property
+    def rover(self) -> Vehicle: ...
+
 
 ARC_MINUTE_RAD = math.pi / (180 * 60)
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from executive.core.clock import Clock
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import Outcome, PoseEstimate, Reason, Segment
 from executive.isc import correction
 from executive.isc.assessment import Assessment
@@ -32,7 +32,7 @@ class Classification:
     def __init__(
         self,
         prior: PoseEstimate,
-        rig: RigCalibration,
+        rig: Rig,
         clock: Clock,
         hypotheses: Iterable[Hypothesis],
         channels: Iterable[Channel],

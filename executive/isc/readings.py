@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from executive.core.devices import DRIVE, INCLINOMETER, TETHER
+from executive.core.ports import Devices
 from executive.core.types import TetherReading, TiltReading, TrackReading
 
 R = TypeVar("R")
@@ -25,13 +27,24 @@ class Readings:
 
 @dataclass(frozen=True)
 class Sensed:
-    """One tick's readings of everything that is read continuously."""
+    """One tick's readings of everything that is read continuously; None for what this robot does not have."""
 
     time_s: float
     tracks: TrackReading
-    tilt: TiltReading
-    tether: TetherReading
+    tilt: TiltReading | None
+    tether: TetherReading | None
+    readings: Readings
 
-    @property
-    def readings(self) -> Readings:
-        return Readings({"tracks": self.tracks, "inclinometer": self.tilt, "tether": self.tether})
+
+def sense(devices: Devices, time_s: float) -> Sensed:
+    """Read once every device that is read continuously; each is found under all names it answers to."""
+    by_device: dict[str, object] = {}
+    for fitted in devices:
+        if fitted.spec.sensed and fitted.spec.quantities:
+            by_device |= dict.fromkeys(fitted.spec.names, fitted.spec.read(fitted.device))
+    readings = Readings(by_device)
+    tracks = readings.get(DRIVE.name, TrackReading)
+    if tracks is None:
+        raise TypeError(f"the drive reads {by_device.get(DRIVE.name)!r}, expected a TrackReading")
+    tilt = readings.get(INCLINOMETER.name, TiltReading)
+    return Sensed(time_s, tracks, tilt, readings.get(TETHER.name, TetherReading), readings)

@@ -6,13 +6,13 @@ import math
 
 from executive.core.clock import Clock
 from executive.core.ports import Devices
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import PoseEstimate, PoseSource
 from executive.isc import correction, prediction
 from executive.isc.comparison import SinceFix
 from executive.isc.gate import Reach, unusable
 from executive.isc.motion import YAW_EFFICIENCY, MotionNoise, MotionState, start
-from executive.isc.readings import Readings, Sensed
+from executive.isc.readings import Readings, Sensed, sense
 
 LEAST_BLOCKED_TURN_RAD = math.radians(5.0)  # what holds one track turns the rover
 
@@ -20,7 +20,7 @@ LEAST_BLOCKED_TURN_RAD = math.radians(5.0)  # what holds one track turns the rov
 class Tracker:
     """The predicted pose and soil, the last readings, and what was predicted since the last fix."""
 
-    def __init__(self, prior: PoseEstimate, rig: RigCalibration, clock: Clock, noise: MotionNoise) -> None:
+    def __init__(self, prior: PoseEstimate, rig: Rig, clock: Clock, noise: MotionNoise) -> None:
         self.motion: MotionState = start(prior, noise)
         self.sensed: Sensed | None = None
         self.since = SinceFix()
@@ -45,12 +45,11 @@ class Tracker:
 
     def sense(self, devices: Devices) -> Sensed:
         """Read the continuous channels once and carry the prediction on with them."""
-        now = Sensed(
-            self._clock.now_s, devices.tracks.read(), devices.inclinometer.read(), devices.tether.read()
-        )
+        now = sense(devices, self._clock.now_s)
         before = self.sensed.tracks if self.sensed else now.tracks
         self._carry_on(now.tracks.left_m - before.left_m, now.tracks.right_m - before.right_m)
-        self.motion = prediction.level(self.motion, now.tilt)
+        if now.tilt is not None:
+            self.motion = prediction.level(self.motion, now.tilt)
         if now.tracks.moving and before.moving:
             self.since = self.since.drew(max(now.tracks.left_current_a, now.tracks.right_current_a))
         self.sensed = now

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from executive.core.ports import Action, Tracks
+from executive.core.ports import Action, Drive
 from executive.core.types import TrackReading
 
 LEAST_M = 0.005
@@ -15,10 +15,10 @@ AGAIN_M = 0.030
 
 
 @dataclass
-class RestingTracks:
-    """Tracks that know whether a drive is commanded. Ask `astray` once a tick."""
+class RestingDrive:
+    """A drive that knows whether a drive is commanded. Ask `astray` once a tick."""
 
-    inner: Tracks
+    inner: Drive
     _drive: Action[TrackReading] | None = None
     _rest_m: tuple[float, float] | None = None
     _allowed_m: float = LEAST_M

@@ -6,7 +6,7 @@ the quality asked and inverse to the remaining error; when the answer is risky o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Callable, Container, Iterable, Mapping
 
 from executive.pool.choice import Attempt, Candidate, Choice
 from executive.pool.memory import Memory
@@ -14,6 +14,8 @@ from executive.pool.policies import FIRST_FITTED, Decision, Option, Policy
 from executive.pool.rating import LEAST_FITNESS, refusal, relevance, worthwhile_s
 from executive.pool.situation import Situation
 from executive.pool.strategy import Strategy
+
+NONE_UNFIT: Mapping[str, str] = {}
 
 
 class Pool:
@@ -24,10 +26,12 @@ class Pool:
         strategies: Iterable[Strategy],
         note: Callable[[Choice | Attempt], None],
         policy: Policy = FIRST_FITTED,
+        unfit: Mapping[str, str] = NONE_UNFIT,
     ) -> None:
+        """`unfit` says of strategies that this robot cannot carry out why not, by name."""
         self.strategies: dict[str, Strategy] = {s.name: s for s in strategies}
         self.memory = Memory()
-        self.policy = policy
+        self.policy, self.unfit = policy, unfit
         self._note = note
 
     def choose(self, situation: Situation, at_hand: Container[str] | None = None) -> Choice:
@@ -57,6 +61,8 @@ class Pool:
             self._note(attempt)
 
     def _rate(self, strategy: Strategy, situation: Situation, at_hand: Container[str] | None) -> Candidate:
+        if strategy.name in self.unfit:
+            return Candidate(strategy.name, 0.0, self.unfit[strategy.name])
         if at_hand is not None and strategy.name not in at_hand:
             return Candidate(strategy.name, 0.0, "needs values that the tree here does not have")
         fitness = relevance(strategy, situation)

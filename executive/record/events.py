@@ -114,6 +114,14 @@ class Telemetry:
 
 
 @dataclass(frozen=True)
+class DeviceReading:
+    """One sample of what a device reports, by quantity, in SI units."""
+
+    device: str
+    values: dict[str, float]
+
+
+@dataclass(frozen=True)
 class RouteEvent:
     """The whole plan as uplinked, in order."""
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from executive.record.events import (
     FaultArmedEvent,
@@ -22,60 +23,56 @@ from executive.record.events import (
     NodeChange,
 )
 from executive.record.history import At, History
+from executive.record.run_result import FalseAlarm, FaultStages
 
 NOMINAL = "nominal"
 DETECTION_GRACE_S = 600.0
 
-Row = dict[str, object]
 
-
-def fault_rows(history: History, world: History) -> list[Row]:
-    """One row per injected fault, in the order of their onsets; times [s], None where a stage never came."""
+def fault_rows(history: History, world: History) -> tuple[FaultStages, ...]:
+    """The stages of each injected fault, in the order of their onsets."""
     armed = history.all(FaultArmedEvent)
     told = sorted(history.all(FaultEvent) + world.all(FaultEvent), key=lambda at: at.time_s)
     names = dict.fromkeys([at.event.name for at in armed] + [at.event.name for at in told])
-    return [_row(name, armed, told, history) for name in names]
+    return tuple(_stages(name, armed, told, history) for name in names)
 
 
-def _row(
+def _stages(
     name: str, armed: Sequence[At[FaultArmedEvent]], told: Sequence[At[FaultEvent]], history: History
-) -> Row:
+) -> FaultStages:
     onset = next((at for at in armed if at.event.name == name), None)
     on = next((at for at in told if at.event.name == name and at.event.active), None)
     off = next((at for at in told if at.event.name == name and not at.event.active), None)
-    row: Row = {
-        "name": name,
-        "cause": (onset.event.cause or None) if onset else None,
-        "fired": on is not None,
-        "t_armed_s": onset.time_s if onset else None,
-        "t_on_s": on.time_s if on else None,
-        "t_off_s": off.time_s if on and off else None,
-        "t_observable_s": None,
-        "t_detected_s": None,
-        "t_isolated_s": None,
-        "hypothesis": None,
-        "expected": (on.event.hypothesis or None) if on else None,
-        "t_recovered_s": None,
-    }
+    stages = FaultStages(
+        name=name,
+        cause=(onset.event.cause or None) if onset else None,
+        fired=on is not None,
+        t_armed_s=onset.time_s if onset else None,
+    )
     if on is None:
-        return row
+        return stages
     until_s = off.time_s + DETECTION_GRACE_S if off else math.inf
-    return row | _answer(history, on.time_s, until_s, on.event.hypothesis)
+    stages = replace(
+        stages,
+        t_on_s=on.time_s,
+        t_off_s=off.time_s if off else None,
+        expected=on.event.hypothesis or None,
+    )
+    return _answered(stages, history, on.time_s, until_s)
 
 
-def _answer(history: History, from_s: float, until_s: float, expected: str) -> Row:
-    """What the executive noticed, concluded and got over."""
+def _answered(stages: FaultStages, history: History, from_s: float, until_s: float) -> FaultStages:
+    """The same with what the executive noticed, concluded and got over."""
     detected = next(iter(episodes(history, from_s, until_s)), None)
-    isolated_s = first_leading(history, expected, from_s, until_s)
-    recovered_s = first_leading(history, NOMINAL, detected.time_s) if detected else None
-    concluded = detected.event if detected else None
-    return {
-        "t_observable_s": _observable_s(history, from_s),
-        "t_detected_s": detected.time_s if detected else None,
-        "t_isolated_s": isolated_s,
-        "hypothesis": expected if isolated_s is not None else concluded,
-        "t_recovered_s": recovered_s,
-    }
+    isolated_s = first_leading(history, stages.expected or "", from_s, until_s)
+    return replace(
+        stages,
+        t_observable_s=_observable_s(history, from_s),
+        t_detected_s=detected.time_s if detected else None,
+        t_isolated_s=isolated_s,
+        hypothesis=stages.expected if isolated_s is not None else (detected.event if detected else None),
+        t_recovered_s=first_leading(history, NOMINAL, detected.time_s) if detected else None,
+    )
 
 
 def _observable_s(history: History, from_s: float) -> float | None:
@@ -113,11 +110,10 @@ def episodes(history: History, from_s: float = 0.0, until_s: float = math.inf) -
     return found
 
 
-def false_alarms(history: History, rows: Sequence[Row]) -> list[Row]:
+def false_alarms(history: History, faults: Sequence[FaultStages]) -> tuple[FalseAlarm, ...]:
     """Episodes that no fault can have caused: before the first one took effect, all of them where none did.
 
     In a run without faults (the paired run) these are all of its alarms.
     """
-    fired = [row["t_on_s"] for row in rows if isinstance(row["t_on_s"], float)]
-    before_s = min(fired, default=math.inf)
-    return [{"t_s": at.time_s, "hypothesis": at.event} for at in episodes(history) if at.time_s < before_s]
+    before_s = min((fault.t_on_s for fault in faults if fault.t_on_s is not None), default=math.inf)
+    return tuple(FalseAlarm(at.time_s, at.event) for at in episodes(history) if at.time_s < before_s)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
 
-from executive.core.clock import Clock
 from executive.core.ports import Devices
 from executive.core.types import (
     Call,
@@ -18,8 +16,9 @@ from executive.core.types import (
 from executive.isc import Assessment, Sensed
 from executive.pool import Attempt, Choice
 from executive.record import events
+from executive.record.bus import EventBus
 from executive.record.pictures import annotated, picture
-from executive.record.recorder import Recorder
+from executive.record.telemetry import samples
 
 CAMERAS = ("left", "right")
 KEEP_EVERY = 5
@@ -27,25 +26,21 @@ VIEW_PX = 320
 
 
 class RunJournal:
-    """Writes to the recorder at mission time. The recorder may break the run; nothing else here may."""
+    """Publishes what it is told as events, on the bus that the recorder listens to."""
 
-    def __init__(self, recorder: Recorder, clock: Clock, route: tuple[Segment, ...]) -> None:
-        self._recorder, self._clock, self._route = recorder, clock, route
+    def __init__(self, bus: EventBus, route: tuple[Segment, ...]) -> None:
+        self._bus, self._route = bus, route
         self._attempts: Counter[str] = Counter()
         self._looks = 0
         self._segment: Segment | None = None
-        self._pose: PoseEstimate | None = None
-        self.hear: Callable[[object], None] = lambda event: None
         self.called: Call | None = None
         self.reached = 0
 
     def write(self, event: object) -> None:
         """Write any event of the record at the present mission time."""
-        self._recorder.write(event, self._clock.now_s)
-        self.hear(event)
+        self._bus.publish(event)
 
     def estimate(self, pose: PoseEstimate) -> None:
-        self._pose = pose
         self.write(pose)
 
     def segment(self, segment: Segment | None) -> None:
@@ -105,41 +100,8 @@ class RunJournal:
         """One sample of all that is read continuously, and of where the rover should be by it."""
         if now.tracks.moving:
             self.write(predicted.on(self._segment))
-        cabin, head = devices.cabin.read(), devices.head.read()
-        self.write(
-            events.Telemetry(
-                left_m=now.tracks.left_m,
-                right_m=now.tracks.right_m,
-                left_current_a=now.tracks.left_current_a,
-                right_current_a=now.tracks.right_current_a,
-                roll_rad=now.tilt.roll_rad,
-                pitch_rad=now.tilt.pitch_rad,
-                arm_rad=cabin.arm_rad,
-                cabin_rad=cabin.cabin_rad,
-                pan_rad=head.pan_rad,
-                tilt_rad=head.tilt_rad,
-                tether_m=now.tether.length_m,
-                tether_n=now.tether.tension_n,
-                moving=now.tracks.moving,
-            )
-        )
-
-    def along_route_m(self) -> float:
-        """How much of the route lies behind the rover, by the last fix [m]."""
-        if self._segment is None or self._pose is None:
-            return 0.0
-        behind = sum(s.length_m for s in self._route[: self._segment.index])
-        along = self._segment.offset(self._pose.x_m, self._pose.y_m).along_m
-        return behind + min(max(along, 0.0), self._segment.length_m)
-
-    def progress(self) -> float:
-        """The share of the route that lies behind the rover, 0 to 1."""
-        return self.along_route_m() / sum(s.length_m for s in self._route)
-
-    def to_go_text(self) -> str:
-        """What remains, for people."""
-        remaining = sum(s.length_m for s in self._route) - self.along_route_m()
-        return f"{remaining:.2f} m to go"
+        for event in samples(now, devices):
+            self.write(event)
 
     def _chosen(self, choice: Choice) -> None:
         if choice.strategy is None:

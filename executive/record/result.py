@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +23,13 @@ from executive.record.events import (
 )
 from executive.record.evidence import false_alarms, fault_rows
 from executive.record.history import At, History
+from executive.record.run_result import (
+    Localisations,
+    RunResult,
+    StrategyRow,
+    TrueFigures,
+    Waypoints,
+)
 from executive.record.truth import (
     PoseError,
     Track,
@@ -31,31 +37,20 @@ from executive.record.truth import (
     driven_beyond_m,
 )
 
-SCHEMA = 1
 NO_STOP = "the record ends without a stop"
 VISION_REASONS = frozenset({Reason.NOT_SEEN, Reason.POOR_VIEW, Reason.UNSTABLE_IMAGES, Reason.IMPLAUSIBLE})
-_TRUTH_KEYS = (
-    "final_error_m",
-    "waypoint_errors_m",
-    "max_cross_track_m",
-    "driven_beyond_off_track_m",
-    "max_tilt_deg",
-    "path_m",
-    "tether_max_n",
-)
 
 
 @dataclass(frozen=True)
 class RunFigures:
-    """What the record cannot know: wall time [s] in all and by part, and how the expectations came out."""
+    """What the record cannot know: wall time [s] in all and by part, and the way-points of the mission."""
 
     wall_s: float | None = None
     wall: Mapping[str, float] = field(default_factory=dict)
-    expectations: Sequence[Mapping[str, object]] = ()
     waypoints_total: int | None = None
 
 
-def summarise(record: Path, truth: Path | None, figures: RunFigures | None = None) -> dict[str, object]:
+def summarise(record: Path, truth: Path | None, figures: RunFigures | None = None) -> RunResult:
     """The content of `result.json`. Without truth, or where a measure is not defined, its value is None.
 
     RecordError if there is no record.
@@ -65,49 +60,36 @@ def summarise(record: Path, truth: Path | None, figures: RunFigures | None = Non
     return summary_of(history, world, digest(record), figures or RunFigures())
 
 
-def summary_of(history: History, world: History, content: str, figures: RunFigures) -> dict[str, object]:
+def summary_of(history: History, world: History, content: str, figures: RunFigures) -> RunResult:
     """The same from what was read already; `content` is the digest of the record."""
     track = Track.of(world)
-    faults = fault_rows(history, world)
-    summary = {
-        "schema": SCHEMA,
-        **_identity(history, content),
-        "wall_s": figures.wall_s,
-        "wall": dict(figures.wall),
-        "waypoints": _waypoints(history, figures.waypoints_total),
-        "truth": dict.fromkeys(_TRUTH_KEYS) if track is None else _truth(history, track),
-        "localisation": _localisation(history, track),
-        "strategies": strategy_rows(history),
-        "faults": faults,
-        "false_alarms": false_alarms(history, faults),
-        "expectations": [dict(e) for e in figures.expectations],
-    }
-    return {key: _strict(value) for key, value in summary.items()}
-
-
-def write_result(path: Path, summary: Mapping[str, object]) -> None:
-    """Write strictly valid JSON, with a newline at the end."""
-    path.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n")
-
-
-def _identity(history: History, content: str) -> dict[str, object]:
     start, stop = history.last(Start), history.last(Stop)
-    return {
-        "scenario": start.event.scenario if start else None,
-        "seed": start.event.seed if start else None,
-        "tier": start.event.tier if start else None,
-        "digest": content,
-        "outcome": stop.event.outcome if stop else "error",
-        "reason": stop.event.reason if stop else NO_STOP,
-        "mission_s": history.end_s,
-    }
+    faults = fault_rows(history, world)
+    result = RunResult(
+        scenario=start.event.scenario if start else None,
+        seed=start.event.seed if start else None,
+        tier=start.event.tier if start else None,
+        digest=content,
+        outcome=stop.event.outcome if stop else "error",
+        reason=stop.event.reason if stop else NO_STOP,
+        mission_s=history.end_s,
+        wall_s=figures.wall_s,
+        wall=dict(figures.wall),
+        waypoints=_waypoints(history, figures.waypoints_total),
+        truth=TrueFigures() if track is None else _truth(history, track),
+        localisation=_localisation(history, track),
+        strategies=strategy_rows(history),
+        faults=faults,
+        false_alarms=false_alarms(history, faults),
+    )
+    return RunResult.from_json(result.to_json())  # what is no number is None, here as in the file
 
 
-def _waypoints(history: History, total: int | None) -> dict[str, object]:
+def _waypoints(history: History, total: int | None) -> Waypoints:
     route = history.last(RouteEvent)
     planned = len(route.event.segments) if route else 0
     reached = {at.event.index for at in history.all(WaypointEvent)}
-    return {"total": planned if total is None else total, "reached": len(reached)}
+    return Waypoints(planned if total is None else total, len(reached))
 
 
 def waypoint_error_m(track: Track, at: At[WaypointEvent]) -> float:
@@ -116,18 +98,18 @@ def waypoint_error_m(track: Track, at: At[WaypointEvent]) -> float:
     return math.hypot(x_m - at.event.target.x_m, y_m - at.event.target.y_m)
 
 
-def _truth(history: History, track: Track) -> dict[str, object]:
+def _truth(history: History, track: Track) -> TrueFigures:
     cross = cross_track(track, history.all(SegmentEvent))
     known = np.abs(cross.cross_m[np.isfinite(cross.cross_m)])
-    return {
-        "final_error_m": _final_error_m(history, track),
-        "waypoint_errors_m": [waypoint_error_m(track, at) for at in history.all(WaypointEvent)],
-        "max_cross_track_m": float(known.max()) if known.size else None,
-        "driven_beyond_off_track_m": float(driven_beyond_m(track, cross)[-1]),
-        "max_tilt_deg": math.degrees(track.tilt_rad().max()),
-        "path_m": float(track.steps_m().sum()),
-        "tether_max_n": float(track.tether_n.max()),
-    }
+    return TrueFigures(
+        final_error_m=_final_error_m(history, track),
+        waypoint_errors_m=tuple(waypoint_error_m(track, at) for at in history.all(WaypointEvent)),
+        max_cross_track_m=float(known.max()) if known.size else None,
+        driven_beyond_off_track_m=float(driven_beyond_m(track, cross)[-1]),
+        max_tilt_deg=math.degrees(track.tilt_rad().max()),
+        path_m=float(track.steps_m().sum()),
+        tether_max_n=float(track.tether_n.max()),
+    )
 
 
 def _final_error_m(history: History, track: Track) -> float | None:
@@ -150,22 +132,19 @@ def vision_fixes(history: History) -> list[PoseEstimate]:
     return [at.event for at in history.all(PoseEstimate) if at.event.is_fix]
 
 
-def _localisation(history: History, track: Track | None) -> dict[str, object]:
+def _localisation(history: History, track: Track | None) -> Localisations:
     errors = pose_errors(history, track) if track is not None else []
     failed = len(failed_localisations(history))
-    figures: dict[str, object] = {
-        "count": len(vision_fixes(history)) + failed,
-        "failed": failed,
-        "position_rmse_m": None,
-        "yaw_rmse_deg": None,
-        "nees_mean": None,
-    }
-    if errors:
-        squares = [e.position_m @ e.position_m for e in errors]
-        figures["position_rmse_m"] = math.sqrt(float(np.mean(squares)))
-        figures["yaw_rmse_deg"] = math.degrees(math.sqrt(np.mean([e.rotation_rad[2] ** 2 for e in errors])))
-        figures["nees_mean"] = float(np.mean([e.nees for e in errors]))
-    return figures
+    count = len(vision_fixes(history)) + failed
+    if not errors:
+        return Localisations(count, failed)
+    return Localisations(
+        count,
+        failed,
+        position_rmse_m=math.sqrt(float(np.mean([e.position_m @ e.position_m for e in errors]))),
+        yaw_rmse_deg=math.degrees(math.sqrt(np.mean([e.rotation_rad[2] ** 2 for e in errors]))),
+        nees_mean=float(np.mean([e.nees for e in errors])),
+    )
 
 
 def failed_localisations(history: History) -> list[At[NodeChange]]:
@@ -181,39 +160,16 @@ def _parents(path: str) -> list[str]:
     return ["/".join(parts[:n]) for n in range(1, len(parts))]
 
 
-def strategy_rows(history: History) -> list[dict[str, object]]:
-    """One row per strategy chosen; `helped` None where the verdict is still out."""
-    rows: list[dict[str, object]] = []
+def strategy_rows(history: History) -> tuple[StrategyRow, ...]:
+    """One row per strategy chosen, in the order of their choice."""
+    rows: list[StrategyRow] = []
     for time_s, event in history.all(StrategyEvent):
         if event.verdict is Verdict.CHOSEN:
-            rows.append(_strategy_row(time_s, event))
+            chosen = (event.name, time_s, event.hypothesis, event.weight, event.attempt)
+            rows.append(StrategyRow(*chosen, why=event.why))
             continue
-        asked = [row for row in rows if row["name"] == event.name and row["helped"] is None]
+        asked = [i for i, row in enumerate(rows) if row.name == event.name and row.helped is None]
         if asked:
-            asked[-1]["helped"] = event.verdict is Verdict.HELPED
-            asked[-1]["t_end_s"] = time_s
-    return rows
-
-
-def _strategy_row(time_s: float, event: StrategyEvent) -> dict[str, object]:
-    return {
-        "name": event.name,
-        "t_s": time_s,
-        "hypothesis": event.hypothesis,
-        "weight": event.weight,
-        "attempt": event.attempt,
-        "helped": None,
-        "t_end_s": None,
-        "why": event.why,
-    }
-
-
-def _strict(value: object) -> object:
-    """The same with what JSON cannot say (NaN, infinities) as None."""
-    if isinstance(value, dict):
-        return {key: _strict(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_strict(inner) for inner in value]
-    if isinstance(value, float):
-        return float(value) if math.isfinite(value) else None
-    return value
+            helped = event.verdict is Verdict.HELPED
+            rows[asked[-1]] = replace(rows[asked[-1]], helped=helped, t_end_s=time_s)
+    return tuple(rows)

@@ -14,6 +14,7 @@ from typing import Any
 from executive.core.types import PoseEstimate
 from executive.core.values import (
     ANGLE,
+    CURRENT,
     FLAG,
     FORCE,
     INTEGER,
@@ -28,8 +29,6 @@ from executive.record.events import (
     TruthEvent,
     WaypointEvent,
 )
-
-CURRENT = ValueType("current", float, "A")
 
 
 @dataclass(frozen=True)

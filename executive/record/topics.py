@@ -32,10 +32,10 @@ class Topic:
     suffix: Callable[[Any], str] = lambda event: ""
 
 
-def _own(name: str, cls: type) -> Topic:
+def _own(name: str, cls: type, suffix: Callable[[Any], str] = lambda event: "") -> Topic:
     """A topic with a schema made from the dataclass."""
     own: Codec[Any] = Codec(cls)
-    return Topic(name, cls, own.message, lambda event, _: own.encode(event), own.decode)
+    return Topic(name, cls, own.message, lambda event, _: own.encode(event), own.decode, suffix)
 
 
 def _fox(
@@ -71,6 +71,7 @@ RECORD: tuple[Topic, ...] = (
     _own("/hypotheses", events.HypothesesEvent),
     _own("/strategy", events.StrategyEvent),
     _own("/telemetry", events.Telemetry),
+    _own("/device", events.DeviceReading, lambda event: f"/{event.device}"),
     _own("/route", events.RouteEvent),
     _own("/segment", events.SegmentEvent),
     _own("/waypoint", events.WaypointEvent),

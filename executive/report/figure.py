@@ -27,6 +27,11 @@ def duration(seconds: float) -> str:
     return " ".join(parts).replace(" ", "\u00a0")  # never broken over two lines
 
 
+def counted(count: int, noun: str, several: str | None = None) -> str:
+    """A number of things for people: 1 case, 2 cases; `several` where that is not the noun with an s."""
+    return f"{count} {noun if count == 1 else several or noun + 's'}"
+
+
 def millimetres(metres: float | None, digits: int = 1) -> str:
     """A length in mm, a dash where there is none."""
     return "–" if metres is None else f"{metres * 1000:.{digits}f} mm"

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from executive.core.errors import RecordError
 from executive.core.types import PoseEstimate, PoseSource, Segment
-from executive.record import History, summarise
+from executive.record import History, RunResult, read_result, summarise
 from executive.record.events import RouteEvent, SegmentEvent, Start
 from executive.record.result import vision_fixes
 from executive.record.truth import (
@@ -30,7 +27,7 @@ class Run:
 
     folder: Path
     scenario_yaml: str
-    result: Mapping[str, Any]
+    result: RunResult
     history: History
     world: History
     missing: tuple[str, ...]
@@ -113,15 +110,14 @@ def _history(path: Path, otherwise: str, missing: list[str]) -> History:
     return History.of(path)
 
 
-def _result(folder: Path, missing: list[str]) -> Mapping[str, Any]:
+def _result(folder: Path, missing: list[str]) -> RunResult:
     """The result as written; computed anew from the record where it was not, empty where nothing is left."""
     path, record = folder / "result.json", folder / "record.mcap"
     if path.is_file():
         try:
-            read: Mapping[str, Any] = json.loads(path.read_text())
-            return read
-        except ValueError:
+            return read_result(path)
+        except RecordError:
             missing.append("result.json cannot be read: figures are computed anew from the record")
     else:
         missing.append("result.json: not written; figures are computed anew from the record")
-    return summarise(record, folder / "truth.mcap") if record.is_file() else {}
+    return summarise(record, folder / "truth.mcap") if record.is_file() else RunResult()

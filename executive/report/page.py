@@ -58,15 +58,15 @@ def render(run: Run, tree_svg: str | None = None) -> str:
     if tree_svg is not None:
         figures.append(_tree(tree_svg))
     template = Environment(undefined=StrictUndefined, autoescape=True).from_string(_asset("template.html"))
-    outcome = str(run.result.get("outcome") or "unknown")
+    outcome = run.result.outcome or "unknown"
     return template.render(
         style=Markup(_asset("style.css")),
         script=Markup(_asset("cursor.js")),
         cursor=Markup(_cursor_data(run)),
-        name=run.result.get("scenario") or run.folder.name,
+        name=run.result.scenario or run.folder.name,
         outcome=outcome.replace("_", " "),
         tone=tone_of(outcome),
-        reason=run.result.get("reason"),
+        reason=run.result.reason,
         missing=[*run.missing, *absent],
         tiles=tiles(run.result),
         figures=figures,
@@ -93,10 +93,10 @@ def _tree(drawing: str) -> Figure:
 
 
 def _repeat(run: Run) -> str:
-    tier = run.result.get("tier")
+    tier = run.result.tier
     words = ["longarm run scenario.yaml"]
-    if run.result.get("seed") is not None:
-        words.append(f"--seed {run.result['seed']}")
+    if run.result.seed is not None:
+        words.append(f"--seed {run.result.seed}")
     if tier:
         words.append(f"--tier {tier}")
     return " ".join(words)
@@ -105,8 +105,8 @@ def _repeat(run: Run) -> str:
 def _facts(run: Run) -> list[tuple[str, str]]:
     """What identifies the run."""
     start = run.history.last(Start)
-    facts = [("seed", str(run.result.get("seed", "–"))), ("tier", str(run.result.get("tier") or "–"))]
-    facts.append(("digest", str(run.result.get("digest", "–"))))
+    seed = "–" if run.result.seed is None else str(run.result.seed)
+    facts = [("seed", seed), ("tier", run.result.tier or "–"), ("digest", run.result.digest or "–")]
     if start is not None and start.event.versions:
         facts.append(("versions", ", ".join(f"{k} {v}" for k, v in start.event.versions.items())))
     return facts

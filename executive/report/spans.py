@@ -54,23 +54,21 @@ def leaf_spans(run: Run) -> dict[str, list[Span]]:
 def strategy_spans(run: Run) -> dict[str, list[Span]]:
     """Per strategy: from its choice to its verdict."""
     spans: dict[str, list[Span]] = defaultdict(list)
-    for row in run.result.get("strategies", []):
-        end = row.get("t_end_s")
-        helped = {True: "helped", False: "did not help", None: "verdict still out"}[row.get("helped")]
-        words = f"against {row['hypothesis']} ({row['weight']:.2f}): {helped}"
-        spans[row["name"]].append(Span(row["t_s"], run.end_s if end is None else end, "strategy", words))
+    for row in run.result.strategies:
+        end_s = run.end_s if row.t_end_s is None else row.t_end_s
+        helped = {True: "helped", False: "did not help", None: "verdict still out"}[row.helped]
+        words = f"against {row.hypothesis} ({row.weight:.2f}): {helped}"
+        spans[row.name].append(Span(row.t_s, end_s, "strategy", words))
     return dict(spans)
 
 
 def fault_spans(run: Run) -> dict[str, list[Span]]:
     """Per injected fault: while it was in effect."""
     spans: dict[str, list[Span]] = {}
-    for row in run.result.get("faults", []):
-        if row.get("t_on_s") is not None:
-            off = row.get("t_off_s")
-            spans[row["name"]] = [
-                Span(row["t_on_s"], run.end_s if off is None else off, "fault", "in effect")
-            ]
+    for row in run.result.faults:
+        if row.t_on_s is not None:
+            end_s = run.end_s if row.t_off_s is None else row.t_off_s
+            spans[row.name] = [Span(row.t_on_s, end_s, "fault", "in effect")]
     return spans
 
 

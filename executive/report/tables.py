@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from executive.core.types import Call
 from executive.record.events import WaypointEvent
 from executive.record.result import waypoint_error_m
-from executive.record.rows import worst_first
+from executive.record.rows import JudgedRow, worst_first
 from executive.report.figure import duration, millimetres
 from executive.report.gather import Run
 from executive.report.overview import letter
@@ -61,14 +59,14 @@ def strategies(run: Run) -> Table:
     rows = tuple(
         (
             letter(n),
-            row["name"],
-            duration(row["t_s"]),
-            row["hypothesis"],
-            f"{row['weight']:.2f}",
-            {True: "yes", False: "no", None: "–"}[row.get("helped")],
-            row.get("why", ""),
+            row.name,
+            duration(row.t_s),
+            row.hypothesis,
+            f"{row.weight:.2f}",
+            {True: "yes", False: "no", None: "–"}[row.helped],
+            row.why,
         )
-        for n, row in enumerate(run.result.get("strategies", []))
+        for n, row in enumerate(run.result.strategies)
     )
     header = ("", "strategy", "chosen at", "against", "weight", "helped", "why")
     return Table("strategies", "Strategies", header, rows)
@@ -80,12 +78,12 @@ FAULT_STAGES = ("armed", "on", "observable", "detected", "isolated", "recovered"
 def faults(run: Run) -> Table:
     rows = tuple(
         (
-            row["name"],
-            *(_time(row.get(f"t_{stage}_s")) for stage in FAULT_STAGES),
-            row.get("hypothesis") or "–",
-            row.get("expected") or "–",
+            row.name,
+            *(_time(getattr(row, f"t_{stage}_s")) for stage in FAULT_STAGES),
+            row.hypothesis or "–",
+            row.expected or "–",
         )
-        for row in run.result.get("faults", [])
+        for row in run.result.faults
     )
     note = (
         "Armed when its onset came, fired when it altered something; the run is invalid where it never did."
@@ -96,7 +94,7 @@ def faults(run: Run) -> Table:
 
 
 def expectations(run: Run) -> Table:
-    rows = tuple(_judged(row) for row in worst_first(run.result.get("expectations", [])))
+    rows = tuple(_judged(row) for row in worst_first(run.result.expectations))
     note = (
         "Robustness is the distance to the limit, negative where it is not met; flags and yes-or-no "
         "expectations have none. An expectation is violated from when it was certain to fail. "
@@ -106,7 +104,7 @@ def expectations(run: Run) -> Table:
 
 
 def safety(run: Run) -> Table:
-    rows = tuple(_judged(row) for row in run.result.get("safety", []))
+    rows = tuple(_judged(row) for row in run.result.safety or ())
     note = "These must hold of every run, whatever fails and whatever its scenario expects."
     return Table("safety", "Safety", ("whatever happens", *_JUDGED), rows, note if rows else "")
 
@@ -114,10 +112,10 @@ def safety(run: Run) -> Table:
 _JUDGED = ("", "robustness", "violated from", "warning")
 
 
-def _judged(row: Mapping[str, Any]) -> tuple[str, ...]:
-    verdict = {True: "met", False: "NOT MET", None: "not known"}[row["met"]]
-    margin = f"{_plain(row.get('robustness'))} {row.get('unit') or ''}".rstrip()
-    return row["text"], verdict, margin, _time(row.get("t_violation_s")), row.get("warning") or ""
+def _judged(row: JudgedRow) -> tuple[str, ...]:
+    verdict = {True: "met", False: "NOT MET", None: "not known"}[row.met]
+    margin = f"{_plain(row.robustness)} {row.unit or ''}".rstrip()
+    return row.text, verdict, margin, _time(row.t_violation_s), row.warning or ""
 
 
 def calls(run: Run) -> Table:

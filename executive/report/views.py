@@ -64,8 +64,8 @@ def _views(run: Run) -> dict[float, list[View]]:
 def _chosen(run: Run, times: list[float]) -> list[float]:
     """First, last, those before a strategy was chosen, then evenly spread ones, in order of time."""
     wanted = [times[0], times[-1]]
-    for row in run.result.get("strategies", []):
-        before = [t for t in times if t <= row["t_s"]]
+    for row in run.result.strategies:
+        before = [t for t in times if t <= row.t_s]
         wanted += before[-1:]
     spread = [times[round(i)] for i in np.linspace(0, len(times) - 1, _MOST)]
     return sorted(list(dict.fromkeys([*wanted, *spread]))[:_MOST])

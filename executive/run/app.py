@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from executive.config.backends import BackendRequest
+from executive.config.reporter import REPORTER_KIND
 from executive.core import registry
 from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError, RecordError
 from executive.core.one_thread import one_thread
 from executive.core.registry import in_project
 from executive.pool import Strategy
-from executive.record import History, events
+from executive.record import History, RunResult, events, read_result, write_result
 from executive.record.recorder import Recorder
-from executive.record.result import RunFigures, write_result
+from executive.record.result import RunFigures
 from executive.record.run_folder import (
     RUN_FILES,
     free_folder,
@@ -28,7 +27,6 @@ from executive.record.run_folder import (
     write_traceback,
 )
 from executive.report import write_report
-from executive.report.reporter import REPORTER_KIND
 from executive.report.show import draw
 from executive.run.assembly import TICK_S, set_up, write_start
 from executive.run.judging import exit_code, judged
@@ -57,7 +55,7 @@ class Finished:
     """A run that ended: its folder, its result, and the exit code that stands for it."""
 
     folder: Path
-    result: dict[str, Any]
+    result: RunResult
     exit_code: int
     defect: BaseException | None = None
 
@@ -134,16 +132,15 @@ def _execute(
     )
     with Recorder(folder / "record.mcap") as recorder:
         write_start(recorder, scenario)
-        try:
-            prepared = set_up(scenario, strategies, request, recorder, watch)
-        except LongarmError:
-            raise
-        except Exception as defect:  # a plug-in that cannot even be made
-            end = ended_by(defect)
-            recorder.write(events.Stop(end.outcome, end.reason), 0.0)
-            return end
-        with progress_bar(scenario.name, sum(s.length_m for s in route), bar) as progress:
-            prepared.progress = progress
+        with progress_bar(scenario.name, route, bar) as listeners:
+            try:
+                prepared = set_up(scenario, strategies, request, recorder, watch, listeners)
+            except LongarmError:
+                raise
+            except Exception as defect:  # a plug-in that cannot even be made
+                end = ended_by(defect)
+                recorder.write(events.Stop(end.outcome, end.reason), 0.0)
+                return end
             end = execute(prepared)
     for part, spent in prepared.backend.wall_s().items():
         watch.spent_s[part] += spent
@@ -162,8 +159,7 @@ def _conclude(
     write_result(folder / "result.json", result)
     if with_report:
         write_report(folder, _tree_svg(folder))
-    kept = json.loads((folder / "result.json").read_text())
-    return Finished(folder, kept, exit_code(result["outcome"], met), end.defect)
+    return Finished(folder, read_result(folder / "result.json"), exit_code(result.outcome, met), end.defect)
 
 
 def _tree_svg(folder: Path) -> str | None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
 
 import numpy as np
 
 from executive.config.backends import BackendRequest
 from executive.core.clock import Stopwatch
+from executive.core.devices import DRIVE
 from executive.core.ports import Backend
 from executive.core.types import (
     Outcome,
@@ -19,18 +20,21 @@ from executive.core.types import (
 )
 from executive.isc import Classification, known_channels, known_hypotheses
 from executive.isc.attitude import quat_from_heading_tilt
-from executive.navigation.belt_rest import RestingTracks
+from executive.navigation.belt_rest import RestingDrive
 from executive.pool import Pool, Strategy, known_policy
 from executive.record import events
+from executive.record.along import AlongRoute
+from executive.record.bus import EventBus, Listener
 from executive.record.command_log import logged
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.record.versions import versions
-from executive.run.instrument import Context, Instrument, TreeParts
+from executive.run.instrument import Context, TreeParts
 from executive.run.instruments import Together, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.run.runner import Run
 from executive.tree.build import build
+from executive.tree.needs import unfit
 from executive.tree.nodes.services import Services
 from executive.tree.strategies import strategy_trees
 
@@ -62,12 +66,13 @@ def set_up(
     request: BackendRequest,
     recorder: Recorder,
     watch: Stopwatch,
+    listeners: Sequence[Listener] = (),
 ) -> Run:
     """The robot and all that drives it; what fails half way leaves the robot at rest and released."""
     with watch.measure("setup"):
         backend = scenario.backend.create(request)
     try:
-        return _prepare(scenario, strategies, backend, recorder, watch)
+        return _prepare(scenario, strategies, backend, recorder, watch, listeners)
     except BaseException:
         backend.safe_stop()
         backend.close()
@@ -80,15 +85,21 @@ def _prepare(
     backend: Backend,
     recorder: Recorder,
     watch: Stopwatch,
+    listeners: Sequence[Listener],
 ) -> Run:
     route = scenario.mission.route()
-    journal = RunJournal(recorder, backend.clock, route)
-    instruments = _instruments(scenario, backend, journal)
-    journal.hear = instruments.hear
+    along = AlongRoute(route)
+    bus = EventBus(backend.clock, (recorder.write, along.hear, *listeners))
+    journal = RunJournal(bus, route)
+    context = Context(backend, scenario.seed, bus.publish, along.share)
+    instruments = Together([spec.make(scenario.of(spec), context) for spec in instruments_there_are()])
+    bus.subscribe(lambda event, time_s: instruments.hear(event))
     strategies = instruments.wrap_pool(strategies)
     devices = logged(instruments.wrap_devices(backend.devices), journal.write)
-    belts = RestingTracks(devices.tracks)
-    devices = replace(devices, tracks=belts)
+    belts = RestingDrive(devices[DRIVE])
+    devices = devices.replace(DRIVE, belts)
+    trees = strategy_trees(strategies, scenario.instead)
+    not_for_this_robot = unfit(trees, scenario.backend)
     localizer = scenario.localizer.made(devices, backend.rig, backend.clock, scenario.seed, scenario.tier)
     services = Services(
         clock=backend.clock,
@@ -104,11 +115,13 @@ def _prepare(
             announce=journal.assessment,
             markers_expected=scenario.localizer.spec.expected_markers(backend.rig),
         ),
-        pool=Pool(strategies, journal.strategy, known_policy(scenario.policy)),
+        pool=Pool(strategies, journal.strategy, known_policy(scenario.policy), not_for_this_robot),
         journal=journal,
     )
     inputs = {"route": route, **scenario.mission.tree_inputs}
-    built = build(scenario.tree, services, inputs, strategy_trees(strategies, scenario.instead))
+    built = build(
+        scenario.tree, services, inputs, {n: t for n, t in trees.items() if n not in not_for_this_robot}
+    )
     instruments.wrap_tree(TreeParts(built.paths, built.store.values, built.trace.fail))
 
     def each_tick() -> None:
@@ -131,9 +144,3 @@ def _prepare(
         each_tick=each_tick,
         invalid=instruments.conclude,
     )
-
-
-def _instruments(scenario: ResolvedScenario, backend: Backend, journal: RunJournal) -> Instrument:
-    """What takes part in this run, as one."""
-    context = Context(backend, scenario.seed, journal.write, journal.progress)
-    return Together([spec.make(scenario.of(spec), context) for spec in instruments_there_are()])

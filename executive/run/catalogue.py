@@ -38,7 +38,7 @@ def broken(listing: str) -> tuple[Broken, ...]:
 
 
 def _kind(listing: str) -> Kind[Any]:
-    return next(kind for kind in registry.kinds() if kind.plural == listing.replace("-", "_"))
+    return registry.kind_named(listing.replace("-", "_"))
 
 
 def _page(kind: Kind[Any], thing: Any) -> Page:
@@ -53,10 +53,15 @@ def _plugins() -> dict[str, Page]:
             found.setdefault(entry.origin(), {}).setdefault(kind.plural, []).append(name)
     for module in registry.modules():
         found.setdefault(module.source, {})
+    one = {kind.plural: kind.name for kind in registry.kinds()}
     return {
-        origin: {"doc": ", ".join(f"{len(names)} {plural}" for plural, names in adds.items())} | adds
+        origin: {"doc": ", ".join(_counted(len(names), one[key], key) for key, names in adds.items())} | adds
         for origin, adds in sorted(found.items())
     }
+
+
+def _counted(count: int, one: str, several: str) -> str:
+    return f"{count} {one if count == 1 else several.replace('_', ' ')}"
 
 
 def _node(node: NodeType) -> Page:

@@ -17,11 +17,12 @@ from executive.config.source import Source
 from executive.core.errors import Problem
 from executive.core.ports import Backend, Devices, Localizer
 from executive.core.registry import Kind
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import Outcome
 from executive.pool import Strategy
 from executive.record.history import History
-from executive.record.rows import Row
+from executive.record.rows import JudgedRow
+from executive.record.run_result import RunResult
 from executive.tree.spec import TreeSpec
 
 S = TypeVar("S")
@@ -98,8 +99,8 @@ class Records:
 
     history: History
     truth: History
-    rig: RigCalibration
-    result: Mapping[str, Any]
+    rig: Rig
+    result: RunResult
     """As far as the record tells it: before anything was judged."""
 
 
@@ -110,8 +111,8 @@ class Judgement:
     `met` None: it has no opinion, and the outcome decides.
     """
 
-    expectations: tuple[Row, ...] = ()
-    safety: tuple[Row, ...] = ()
+    expectations: tuple[JudgedRow, ...] = ()
+    safety: tuple[JudgedRow, ...] = ()
     met: bool | None = None
 
 
@@ -165,5 +166,9 @@ class InstrumentSpec(Generic[S]):
 
 
 INSTRUMENT_KIND: Kind[InstrumentSpec[Any]] = Kind(
-    "instrument", "instruments", "What takes part in a run beside the executive.", InstrumentSpec
+    "instrument",
+    "instruments",
+    "What takes part in a run beside the executive.",
+    InstrumentSpec,
+    page=lambda spec: {"doc": spec.doc, "keys": list(spec.keys), "after": list(spec.after)},
 )

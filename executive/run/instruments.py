@@ -9,19 +9,28 @@ from typing import Any
 from executive.core import registry
 from executive.core.errors import PluginError
 from executive.core.ports import Devices, Localizer
+from executive.core.registry import Broken
 from executive.pool import Strategy
 from executive.run.instrument import INSTRUMENT_KIND, Instrument, InstrumentSpec, TreeParts
 
 
 def instruments_there_are() -> tuple[InstrumentSpec[Any], ...]:
-    """Every registered instrument, by name but for what comes `after` what; PluginError if one is broken."""
-    specs = {name: registry.get(INSTRUMENT_KIND, name) for name in registry.names(INSTRUMENT_KIND)}
+    """Every instrument that can be used, by name but for what comes `after` what.
+
+    PluginError where two own the same key.
+    """
+    specs = registry.every(INSTRUMENT_KIND)
     before = {name: [other for other in spec.after if other in specs] for name, spec in specs.items()}
     owners: dict[str, str] = {}
     for key, name in ((key, name) for name, spec in specs.items() for key in spec.keys):
         if owners.setdefault(key, name) != name:
             raise PluginError(f'instrument {name}: the scenario key "{key}" belongs to {owners[key]} already')
     return tuple(specs[name] for name in TopologicalSorter(before).static_order())
+
+
+def broken_instruments() -> tuple[Broken, ...]:
+    """The instruments that runs have to do without, and why."""
+    return tuple(each for each in registry.broken(INSTRUMENT_KIND) if each.name)
 
 
 class Together(Instrument):

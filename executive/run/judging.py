@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-from executive.record import History, digest
+from executive.record import History, RunResult, digest
 from executive.record.result import RunFigures, summary_of
 from executive.run.instrument import Records
 from executive.run.instruments import instruments_there_are
@@ -14,21 +14,22 @@ from executive.run.resolved import ResolvedScenario
 REACHED, OTHERWISE, DEFECT = 0, 1, 3
 
 
-def judged(
-    scenario: ResolvedScenario, folder: Path, figures: RunFigures
-) -> tuple[dict[str, Any], bool | None]:
-    """The content of `result.json` from the records of a run, complete or cut off.
+def judged(scenario: ResolvedScenario, folder: Path, figures: RunFigures) -> tuple[RunResult, bool | None]:
+    """The result of a run, complete or cut off, from its records.
 
     And whether the run was as it should be, None where no instrument has an opinion.
     """
     record, truth = folder / "record.mcap", folder / "truth.mcap"
     history, world = History.of(record), History.of(truth) if truth.is_file() else History.empty()
-    result: dict[str, Any] = summary_of(history, world, digest(record), figures)
+    result = summary_of(history, world, digest(record), figures)
     records = Records(history, world, scenario.rig, result)
     found = [spec.judge(scenario.of(spec), records) for spec in instruments_there_are()]
-    result["expectations"] = [row for each in found for row in each.expectations]
-    result["safety"] = [row for each in found for row in each.safety]
     opinions = [each.met for each in found if each.met is not None]
+    result = replace(
+        result,
+        expectations=tuple(row for each in found for row in each.expectations),
+        safety=tuple(row for each in found for row in each.safety),
+    )
     return result, all(opinions) if opinions else None
 
 

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from executive.record.journal import RunJournal
+from executive.core.types import Segment
+from executive.record.along import AlongRoute
+from executive.record.bus import Listener, harmless
+from executive.record.events import Telemetry
 
-Report = Callable[[RunJournal, float], None]
 EVERY_S = 20.0
 
 
 @contextmanager
-def progress_bar(title: str, length_m: float, shown: bool) -> Iterator[Report]:
-    """A bar on stderr that fills with metres of route; a silent one if not `shown`."""
+def progress_bar(title: str, route: tuple[Segment, ...], shown: bool) -> Iterator[tuple[Listener, ...]]:
+    """A bar on stderr that fills with metres of route, as a listener to events; none if not `shown`."""
     if not shown:
-        yield lambda journal, now_s: None
+        yield ()
         return
     columns = (
         TextColumn("[bold]{task.description}"),
@@ -27,13 +29,18 @@ def progress_bar(title: str, length_m: float, shown: bool) -> Iterator[Report]:
         TextColumn("{task.fields[text]}"),
         TimeElapsedColumn(),
     )
+    along = AlongRoute(route)
     with Progress(*columns, console=Console(stderr=True)) as bar:
-        task = bar.add_task(title, total=max(length_m, 1e-6), text="")
+        task = bar.add_task(title, total=max(along.length_m, 1e-6), text="setting up")
 
-        def report(journal: RunJournal, now_s: float) -> None:
-            if now_s % EVERY_S:
-                return
-            text = f"mission {now_s / 60:5.1f} min, way-point {journal.reached}, {journal.to_go_text()}"
-            bar.update(task, completed=journal.along_route_m(), text=text)
+        def watch(event: object, time_s: float) -> None:
+            along.hear(event, time_s)
+            if isinstance(event, Telemetry) and time_s % EVERY_S == 0.0:
+                bar.update(task, completed=along.behind_m(), text=_text(along, time_s))
 
-        yield report
+        yield (harmless(watch),)
+
+
+def _text(along: AlongRoute, time_s: float) -> str:
+    to_go_m = along.length_m - along.behind_m()
+    return f"mission {time_s / 60:5.1f} min, way-point {along.reached}, {to_go_m:.2f} m to go"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from executive.config.backends import BACKEND_KIND, BackendSpec
 from executive.config.distributions import drawn
 from executive.config.find import find, portable, shown
-from executive.config.localizers import localizer_from
+from executive.config.localizers import ChosenLocalizer, localizer_from
 from executive.config.mission import mission_problems
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.overrides import override
@@ -26,10 +26,11 @@ from executive.core.errors import ConfigError, Problem
 from executive.core.registry import Project, in_project
 from executive.pool.known import DEFAULT_POLICY, POLICY_KIND
 from executive.run.instrument import InstrumentSpec, Setting
-from executive.run.instruments import instruments_there_are
+from executive.run.instruments import broken_instruments, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
+from executive.tree.needs import devices_of, missing
 from executive.tree.spec import TreeSpec
 
 
@@ -74,19 +75,25 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
         source = problems.attempt(_drawn, source, abs(seed), instruments) or source
     owned = [key for spec in instruments for key in spec.keys]
     file = problems.attempt(parse, source, ScenarioFile, beside=owned)
+    if file is None:  # what looks like an unknown key may be that of an instrument that is broken
+        problems.found += [source.at(()).problem(str(each)) for each in broken_instruments()]
     backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
     backend = problems.attempt(_backend, source, backend_name)
     tier = problems.attempt(_tier, source, backend) if backend else None
     localizer = problems.attempt(localizer_from, source, tier)
     problems.attempt(_check_policy, source)
     world = problems.attempt(_world, source, backend) if backend else None
-    rig = problems.attempt(rig_from, source, ("rig",))
+    rig = problems.attempt(rig_from, source, ("rig",), backend.rig) if backend else None
     settings = _settings(source, instruments, _setting(source, backend_name, tier), problems)
     tree_path = problems.attempt(_tree_path, source)
     tree = problems.attempt(load_tree, tree_path) if tree_path else None
     inputs = problems.attempt(_inputs, source, tree) if tree else None
     for spec in instruments:
         problems.found.extend(spec.check(source.only(spec.keys), settings, tree))
+    if localizer is not None and backend is not None:
+        problems.found.extend(_unfit(source, localizer, backend))
+    if tree is not None and backend is not None:
+        problems.found.extend(missing(tree, backend))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
@@ -162,6 +169,18 @@ def _setting(source: Source, backend: str, tier: str | None) -> Setting:
     mission = source.data.get("mission") if isinstance(source.data, dict) else None
     points = mission.get("waypoints") if isinstance(mission, dict) else None
     return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
+
+
+def _unfit(source: Source, localizer: ChosenLocalizer, backend: BackendSpec) -> Iterator[Problem]:
+    """What a localizer needs that the backend's robot is without."""
+    spec, mark = localizer.spec, source.at(("localizer",))
+    lacking = [name for name in spec.needs if name not in devices_of(backend)]
+    if lacking:
+        told = f"{spec.name} needs {', '.join(lacking)}, which the backend {backend.name} does not have"
+        yield mark.problem(told)
+    if not issubclass(backend.rig, spec.rig):
+        told = f"{spec.name} needs a {spec.rig.__name__}, the backend {backend.name} has a"
+        yield mark.problem(f"{told} {backend.rig.__name__}")
 
 
 def _check_policy(source: Source) -> None:

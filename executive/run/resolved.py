@@ -13,12 +13,14 @@ from executive.config.backends import BackendSpec
 from executive.config.localizers import ChosenLocalizer
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.rig_overrides import rig_fields
+from executive.core.errors import ConfigError
 from executive.core.registry import Project, in_project
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.pool.known import DEFAULT_POLICY
 from executive.run.instrument import InstrumentSpec
 from executive.run.instruments import instruments_there_are
 from executive.tree.load import Instead, load_tree
+from executive.tree.needs import missing
 from executive.tree.spec import TreeSpec
 from executive.tree.strategies import load_strategies, strategy_trees
 
@@ -31,7 +33,7 @@ class ResolvedScenario:
 
     file: ScenarioFile
     world: BaseModel
-    rig: RigCalibration
+    rig: Rig
     settings: Mapping[str, object]
     """What each instrument has read of its keys, by the instrument's name."""
     tree: TreeSpec
@@ -74,6 +76,9 @@ class ResolvedScenario:
         with in_project(self.project):
             tree = load_tree(self.mission.tree, instead=instead)
             strategy_trees(load_strategies(), instead)
+            found = missing(tree, self.backend)
+        if found:
+            raise ConfigError(found)
         return replace(self, tree=tree, instead=instead)
 
     def of(self, spec: InstrumentSpec[S]) -> S:
@@ -87,7 +92,9 @@ class ResolvedScenario:
         data["world"] = self.world.model_dump(mode="json", by_alias=True, exclude_none=True)
         data["rig"] = rig_fields(self.rig)
         time_limit = data.pop("time_limit")
-        for spec in instruments_there_are():
+        with in_project(self.project):
+            instruments = instruments_there_are()
+        for spec in instruments:
             data |= spec.dump(self.of(spec))
         data["time_limit"] = time_limit
         return yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=110)

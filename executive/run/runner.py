@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from executive.core.clock import Stopwatch
+from executive.core.devices import DRIVE
 from executive.core.errors import NodeRaised
 from executive.core.ports import Backend
 from executive.core.types import Outcome, Reason
@@ -50,7 +50,6 @@ class Run:
     recorder: Recorder
     stopwatch: Stopwatch
     time_limit_s: float
-    progress: Callable[[RunJournal, float], None] = lambda journal, now_s: None
     each_tick: Callable[[], None] = lambda: None
     invalid: Callable[[], str | None] = lambda: None
     """Asked at the end: why the run proves nothing, None if it does."""
@@ -97,8 +96,6 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
             return RunEnd("time_limit", f"still under way after {run.time_limit_s:.0f} s")
         with watch.measure("advance"):
             run.backend.advance()
-        with suppress(Exception):  # who only looks on must not break the run
-            run.progress(run.journal, run.services.clock.now_s)
 
 
 def _ended(run: Run) -> RunEnd:
@@ -151,7 +148,7 @@ def _see_it_rest(run: Run) -> None:
     """
     by_s = run.services.clock.now_s + SETTLING_S
     run.backend.advance()
-    while run.services.devices.tracks.read().moving and run.services.clock.now_s < by_s:
+    while run.services.devices[DRIVE].read().moving and run.services.clock.now_s < by_s:
         run.backend.advance()
     run.backend.advance()
     now = run.services.classification.tracker.sense(run.services.devices)

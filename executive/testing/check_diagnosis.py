@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from executive.core.errors import Breach
 from executive.core.types import PoseEstimate, Reason
 from executive.isc import Channel, Comparison, Gaussian, Hypothesis, Innovation, Measured, SinceFix
 from executive.isc.attitude import quat_from_heading_tilt
@@ -16,7 +17,7 @@ from executive.isc.motion import MotionNoise, start
 WIDE_SIGMAS = 12.0
 
 
-class DiagnosisBreach(AssertionError):
+class DiagnosisBreach(Breach):
     """The hypothesis or channel broke promises; the message says which."""
 
 
@@ -83,4 +84,4 @@ def _not_normal(likelihoods: Sequence[Gaussian]) -> Iterator[str]:
 
 def _raise(kind: str, name: str, broken: tuple[str, ...]) -> None:
     if broken:
-        raise DiagnosisBreach(f"{kind} {name}: {'; '.join(broken)}")
+        raise DiagnosisBreach(f"{kind} {name}", broken)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from executive.config.localizers import LOCALIZER_KIND, LocalizerRequest, LocalizerSpec
+from executive.core.errors import Breach
 from executive.core.ports import Action, Backend, LocaliseRequest, Localizer
 from executive.core.types import Localisation, Outcome, PoseEstimate, PoseSource, Quality, Reason
 
@@ -15,8 +16,8 @@ BUDGET_S = 900.0
 OVERTIME_S = 120.0  # in which an action under way may still end
 
 
-class LocalizerBreach(AssertionError):
-    """The localizer broke a promise; the message says which."""
+class LocalizerBreach(Breach):
+    """The localizer breaks a promise; the message says which."""
 
 
 def check_localizer(
@@ -26,8 +27,9 @@ def check_localizer(
 
     `predicted` is where the rover of these backends stands, as well as ground would know it.
     """
-    for fault in LOCALIZER_KIND.faults_of(spec.name, spec):
-        raise LocalizerBreach(fault)
+    broken = LOCALIZER_KIND.faults_of(spec.name, spec)
+    if broken:
+        raise LocalizerBreach(f"localizer {spec.name}", broken)
     _expect(not spec.tiers or tier in spec.tiers, f"it works in {spec.tiers}, got the tier {tier}")
     for check in (_a_fix_is_one, _a_tendency_is_no_fix, _cancelled_is_cancelled, _points_at_the_rover):
         backend = make_backend()
@@ -43,7 +45,7 @@ def check_localizer(
 
 def _expect(held: bool, promise: str) -> None:
     if not held:
-        raise LocalizerBreach(promise)
+        raise LocalizerBreach("localizer", [promise])
 
 
 def _ended(action: Action[Localisation], backend: Backend) -> Outcome[Localisation]:
@@ -55,15 +57,14 @@ def _ended(action: Action[Localisation], backend: Backend) -> Outcome[Localisati
             _expect(action.poll() is outcome, "an outcome, once given, stays the same")
             return outcome
         backend.advance()
-    raise LocalizerBreach(f"a localisation did not end within {BUDGET_S:.0f} s, its budget")
+    raise LocalizerBreach("localizer", [f"a localisation ends within its budget, {BUDGET_S:.0f} s"])
 
 
 def _pose(outcome: Outcome[Localisation]) -> PoseEstimate:
     found = None if outcome.value is None else outcome.value.pose
     if not outcome.ok or found is None:
-        raise LocalizerBreach(
-            f"it finds the rover where it stands; got {outcome.reason} ({outcome.detail}), pose {found}"
-        )
+        got = f"got {outcome.reason} ({outcome.detail}), pose {found}"
+        raise LocalizerBreach("localizer", [f"it finds the rover where it stands; {got}"])
     numbers = [*found.position_site_m, *found.quat_site_body, *found.covariance.ravel()]
     _expect(all(math.isfinite(number) for number in numbers), "a pose is made of numbers")
     _expect(bool((np.linalg.eigvalsh(found.covariance) >= 0).all()), "a covariance is positive")
@@ -104,7 +105,5 @@ def _points_at_the_rover(
     spec: LocalizerSpec, localizer: Localizer, backend: Backend, predicted: PoseEstimate
 ) -> None:
     pan_rad, tilt_rad = localizer.pointing(predicted)
-    head = backend.rig.head
-    low_rad, high_rad = head.tilt_limits_rad
-    within = abs(pan_rad) <= head.pan_limit_rad and low_rad <= tilt_rad <= high_rad
-    _expect(within, f"the head can look where it points; got ({pan_rad}, {tilt_rad}) rad")
+    within = abs(pan_rad) <= math.pi and abs(tilt_rad) <= math.pi / 2
+    _expect(within, f"a head can look where it points; got ({pan_rad}, {tilt_rad}) rad")

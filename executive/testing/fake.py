@@ -7,8 +7,8 @@ returns marker centres at 1000 px per metre, from which `OverheadLocalizer` fits
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict
 from executive.config.backends import BackendRequest, BackendSpec
 from executive.config.localizers import LocalizerRequest, LocalizerSpec
 from executive.core.clock import Clock
+from executive.core.devices import CABIN, CAMERAS, HEAD, INCLINOMETER, LINK, TETHER, TRACKS
 from executive.core.ports import Action, Devices, LocaliseRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -41,6 +42,7 @@ from executive.isc.attitude import quat_from_heading_tilt
 
 T = TypeVar("T")
 PIXELS_PER_M = 1000.0
+ALL = ("tracks", "cabin", "head", "cameras", "inclinometer", "tether", "link")
 
 
 class FakeWorld(BaseModel):
@@ -232,27 +234,30 @@ class FakeLink:
 
 
 class FakeBackend:
-    """The fake robot as a `Backend`."""
+    """The fake robot as a `Backend`, with all its devices or some."""
 
-    def __init__(self, request: BackendRequest) -> None:
+    def __init__(self, request: BackendRequest, devices: Collection[str] = ALL) -> None:
         world = request.world
         if not isinstance(world, FakeWorld):
             raise TypeError(f"got a {type(world).__name__}, expected a FakeWorld")
         self.clock = Clock(request.tick_s)
+        if not isinstance(request.rig, RigCalibration):
+            raise TypeError(f"got a {type(request.rig).__name__}, expected a RigCalibration")
         self.rig = request.rig
         first = request.route[0].start
         rng = np.random.default_rng(request.seed)
         radial = math.atan2(first.y_m, first.x_m)
         self.robot = FakeRobot(self.clock, self.rig, world, rng, first.x_m, first.y_m, radial)
-        self.devices = Devices(
-            FakeTracks(self.robot),
-            FakeCabin(self.robot),
-            FakeHead(self.robot),
-            FakeCameras(self.robot),
-            FakeInclinometer(self.robot),
-            FakeTether(self.robot),
-            FakeLink(self.robot),
+        fitted = (
+            TRACKS.fit(FakeTracks(self.robot)),
+            CABIN.fit(FakeCabin(self.robot)),
+            HEAD.fit(FakeHead(self.robot)),
+            CAMERAS.fit(FakeCameras(self.robot)),
+            INCLINOMETER.fit(FakeInclinometer(self.robot)),
+            TETHER.fit(FakeTether(self.robot)),
+            LINK.fit(FakeLink(self.robot)),
         )
+        self.devices = Devices(*(one for one in fitted if one.spec.name in devices))
 
     def advance(self) -> None:
         self.clock.advance()
@@ -276,7 +281,7 @@ class OverheadLocalizer:
 
     def locate(self, request: LocaliseRequest) -> Action[Localisation]:
         source = PoseSource.TREND if request.quality is Quality.TREND else OVERHEAD.sources[0]
-        return _Located(self._devices.cameras.take(Shot(leds=(0, 1, 2, 4, 8))), self._rig, source)
+        return _Located(self._devices[CAMERAS].take(Shot(leds=(0, 1, 2, 4, 8))), self._rig, source)
 
     def pointing(self, pose: PoseEstimate) -> Vec2:
         height = self._rig.head.mast_height_m
@@ -338,12 +343,18 @@ BACKEND = BackendSpec(
     doc="Arithmetic instead of physics: for tests of trees and strategies, thousands of ticks a second.",
     world_model=FakeWorld,
     tiers=("geometric",),
+    devices=ALL,
+    rig=RigCalibration,
     create=FakeBackend,
 )
 
 
 def _overhead(request: LocalizerRequest) -> OverheadLocalizer:
     return OverheadLocalizer(request.devices, request.rig, request.clock)
+
+
+def _markers(rig: RigCalibration) -> int:
+    return len(rig.markers.positions_plc_m)
 
 
 OVERHEAD = LocalizerSpec(
@@ -353,5 +364,11 @@ OVERHEAD = LocalizerSpec(
     make=_overhead,
     tiers=("geometric",),
     needs=("cameras",),
-    expected_markers=lambda rig: len(rig.markers.positions_plc_m),
+    rig=RigCalibration,
+    expected_markers=_markers,
 )
+
+
+def fake_with(*devices: str) -> BackendSpec:
+    """The fake robot with these of its devices only."""
+    return replace(BACKEND, devices=devices, create=lambda request: FakeBackend(request, devices))

@@ -103,12 +103,6 @@ class _Trees:
         return TreeSpec(file.tree, file.doc, source.at(()).file, ports or (), root, reader.flow.types, size)
 
 
-def _broken(word: str) -> str:
-    """What an unknown node might have been, had its plug-in been loaded."""
-    named = [f"; {each}" for each in registry.broken(LEAF_KIND) if each.name == word]
-    return "".join(named) or not_loaded()
-
-
 def _size(node: NodeSpec) -> int:
     return 1 + (node.tree.size if node.tree else 0) + sum(_size(child) for child in node.children)
 
@@ -219,16 +213,20 @@ class _TreeReader:
             given = word in self.trees.given
             path = Path(word) if given else find("trees", word, self.source.folder(), mark)
         except ConfigError:
-            known = [*self.trees.types, *names("trees", folder=self.source.folder())]
-            message = (
-                f'got the unknown node "{word}", expected a node or a tree{guess(word, known)}{_broken(word)}'
-            )
-            raise ConfigError([mark.problem(message)]) from None
+            raise ConfigError([mark.problem(self._unknown(word))]) from None
         if path in self.stack:
             chain = " > ".join(p.stem for p in (*self.stack[self.stack.index(path) :], path))
             message = f"got a tree inside itself ({chain}), expected no recursion"
             raise ConfigError([mark.problem(message)])
         return self.trees.load(path, self.stack)
+
+    def _unknown(self, word: str) -> str:
+        """Why there is no such node: it is broken, misspelt, or in a plug-in that is not loaded."""
+        broken = next((each for each in registry.broken(LEAF_KIND) if each.name == word), None)
+        if broken is not None:
+            return str(broken)
+        near = guess(word, [*self.trees.types, *names("trees", folder=self.source.folder())])
+        return f'got the unknown node "{word}", expected a node or a tree{near}{not_loaded(LEAF_KIND)}'
 
     def _ports(
         self, place: Place, kind: NodeType, given: Mapping[str, Any], local: Problems

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS
 from executive.core.ports import Devices
 from executive.core.rig import RigCalibration
 from executive.core.types import Shot, Window
@@ -31,7 +32,7 @@ class Metering:
         exposure = 1.0
         while exposure >= _SHORTEST:
             shot = Shot((0,), windows, exposure=exposure)
-            taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline_s)
+            taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
             if taken.value is None or not taken.ok:
                 return False
             if not overexposed(taken.value, self._rig.sensor):

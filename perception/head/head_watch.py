@@ -14,6 +14,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS, HEAD
 from executive.core.ports import Devices
 from executive.core.types import (
     Array,
@@ -126,7 +127,7 @@ class HeadWatch:
 
     def _in_turn(self, rover: PoseEstimate) -> list[Reference]:
         """The references that the rover does not stand in, the nearest to where the head looks first."""
-        now = self._devices.head.read().pan_rad
+        now = self._devices[HEAD].read().pan_rad
 
         def apart(reference: Reference, pan_rad: float) -> float:
             return abs(math.remainder(reference.head_rad[0] - pan_rad, 2 * math.pi))
@@ -142,10 +143,10 @@ class HeadWatch:
         self, head_rad: Vec2, deadline_s: float
     ) -> Steps[Images | Centres | Outcome[Images | Centres]]:
         """Turn there and take a picture; the failure if one of these fails."""
-        turned = yield from wait_for(self._devices.head.point(*head_rad), self._clock, deadline_s)
+        turned = yield from wait_for(self._devices[HEAD].point(*head_rad), self._clock, deadline_s)
         if not turned.ok:
             return Outcome(turned.reason, turned.detail)
-        taken = yield from wait_for(self._devices.cameras.take(_PICTURE), self._clock, deadline_s)
+        taken = yield from wait_for(self._devices[CAMERAS].take(_PICTURE), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return Outcome(taken.reason if not taken.ok else Reason.DEVICE, taken.detail)
         return taken.value

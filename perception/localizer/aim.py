@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from executive.core.clock import Clock
+from executive.core.devices import CABIN, HEAD, INCLINOMETER
 from executive.core.ports import Devices
 from executive.core.types import HeadReading, Outcome, PoseEstimate, Vec2
 from perception.frames.routine import Steps, wait_for
@@ -24,7 +25,7 @@ class Aim:
 
     def pointing(self, pose: PoseEstimate) -> Vec2:
         """Pan and tilt [rad] that put the marker plate of this pose in the stereoscopic middle."""
-        cabin = self._devices.cabin.read()
+        cabin = self._devices[CABIN].read()
         plc = body_transform(pose) @ plc_in_body(self._chain.rig.cabin, cabin.arm_rad, cabin.cabin_rad)
         return pointing_at(self._chain, plc.apply(self._chain.markers_plc_m).mean(axis=0))
 
@@ -34,7 +35,7 @@ class Aim:
         """Bring the prediction (plus an offset) to the stereoscopic middle; an outcome if that failed."""
         pan, tilt = self.pointing(predicted)
         pan, tilt = self._clip(pan + offset_rad[0], tilt + offset_rad[1])
-        now = self._devices.head.read()
+        now = self._devices[HEAD].read()
         off = max(abs(math.remainder(pan - now.pan_rad, 2 * math.pi)), abs(tilt - now.tilt_rad))
         if off <= _REPOINT_RAD and not now.moving:
             return None
@@ -42,13 +43,13 @@ class Aim:
 
     def turn(self, head_rad: Vec2, deadline_s: float) -> Steps[Outcome[HeadReading] | None]:
         """Turn the head to these angles [rad]; an outcome if that failed."""
-        turned = yield from wait_for(self._devices.head.point(*head_rad), self._clock, deadline_s)
+        turned = yield from wait_for(self._devices[HEAD].point(*head_rad), self._clock, deadline_s)
         return None if turned.ok else Outcome(turned.reason, f"head: {turned.detail}")
 
     def expectation(self, predicted: PoseEstimate) -> Expectation:
         """Where the rover should show with head, cabin and inclinometers as they are now."""
-        head, cabin = self._devices.head.read(), self._devices.cabin.read()
-        tilt = self._devices.inclinometer.read()
+        head, cabin = self._devices[HEAD].read(), self._devices[CABIN].read()
+        tilt = self._devices[INCLINOMETER].read()
         return expect(
             self._chain,
             predicted,

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS
 from executive.core.ports import Action, Devices, LocaliseRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -45,8 +46,8 @@ class LedStereoLocalizer:
     ) -> None:
         self._clock, self._settings = clock, settings or LedStereoSettings()
         chain = Chain.of(rig)
-        self._cameras = CountingCameras(CheckedCameras(devices.cameras, rig.sensor), clock)
-        devices = replace(devices, cameras=self._cameras)
+        self._cameras = CountingCameras(CheckedCameras(devices[CAMERAS], rig.sensor), clock)
+        devices = devices.replace(CAMERAS, self._cameras)
         self._aim = Aim(devices, chain, clock)
         detector = MarkerDetector(devices, rig, clock)
         views = EmptyViews(chain)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS, INCLINOMETER
 from executive.core.ports import Devices
 from executive.core.types import (
     Array,
@@ -108,7 +109,8 @@ class Outlines:
             return failed.detail
         expectation = self._aim.expectation(predicted)
         windows = view.windows(self._chain, expectation)
-        taken = yield from wait_for(self._devices.cameras.take(Shot(UNLIT, windows)), self._clock, deadline_s)
+        shot = Shot(UNLIT, windows)
+        taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return f"cameras: {taken.detail}"
         data = taken.value
@@ -156,7 +158,7 @@ class Outlines:
         candidates = find_candidates(self._chain.rig, data, 1.0).candidates
         if not np.isfinite(data.uv_px).all():
             return "no outline shows"
-        state, tilt = expectation.state, self._devices.inclinometer.read()
+        state, tilt = expectation.state, self._devices[INCLINOMETER].read()
         attitude = (tilt.roll_rad, tilt.pitch_rad)
         found = choose(self._chain, candidates, state.head_rad, state.joints_rad, attitude, expectation.prior)
         if isinstance(found, Rejection):

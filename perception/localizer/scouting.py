@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS
 from executive.core.ports import Devices, LocaliseRequest
 from executive.core.types import (
     Array,
@@ -82,7 +83,7 @@ class Scout:
         failed = yield from self._aim.turn(head_rad, deadline_s)
         if failed is not None:
             return None
-        taken = yield from wait_for(self._devices.cameras.take(Shot(UNLIT)), self._clock, deadline_s)
+        taken = yield from wait_for(self._devices[CAMERAS].take(Shot(UNLIT)), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return None
         data, sensor = taken.value, self._chain.rig.sensor

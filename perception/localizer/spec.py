@@ -58,6 +58,7 @@ LED_STEREO = LocalizerSpec(
     sources=(MARKERS, PASSIVE),
     tiers=("full", "geometric"),
     needs=("cameras", "head", "cabin", "inclinometer"),
+    rig=RigCalibration,
     expected_markers=_markers,
     make=_make,
     prepare=_prepare,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS
 from executive.core.ports import Devices, LocaliseRequest
 from executive.core.types import Localisation, Outcome, Reason, Shot
 from perception.frames.exposure import plate_view
@@ -37,7 +38,7 @@ class Tendency:
         windows = self._detector.windows(expectation, 1.0, window_margin_px(self._chain.rig, range_m))
         shot = Shot(LEDS, windows, CADENCE_S)
         start_s = self._clock.now_s
-        taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline_s)
+        taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return Outcome(taken.reason, f"cameras: {taken.detail}")
         pose = coarse_pose(self._chain, expectation, request.predicted, taken.value, start_s)

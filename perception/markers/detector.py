@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS, INCLINOMETER
 from executive.core.ports import Devices, LocaliseRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -119,7 +120,7 @@ class MarkerDetector:
         if pairs < 1:
             return None
         shot = self._shot(led_sequence(markers, pairs), windows)
-        taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline_s)
+        taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return Outcome(taken.reason, f"cameras: {taken.detail}")
         observation = single_observation(self._chain, taken.value, pairs, expectation, self._tilt_rad)
@@ -140,7 +141,7 @@ class MarkerDetector:
             if batch < _LEAST_CODED_PAIRS:
                 break
             shot = self._shot(coded_sequence(len(self._chain.markers_plc_m), batch), windows)
-            taken = yield from wait_for(self._devices.cameras.take(shot), self._clock, deadline_s)
+            taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
             if taken.value is None or not taken.ok:
                 return Outcome(taken.reason, f"cameras: {taken.detail}")
             stack.add(taken.value)
@@ -164,7 +165,7 @@ class MarkerDetector:
     @property
     def _tilt_rad(self) -> Vec2:
         """Roll and pitch as the inclinometers have them now."""
-        tilt = self._devices.inclinometer.read()
+        tilt = self._devices[INCLINOMETER].read()
         return tilt.roll_rad, tilt.pitch_rad
 
     def _marker_windows(self, expectation: Expectation, scope: Scope) -> tuple[Window, Window]:

@@ -21,8 +21,8 @@ from executive.config.source import Place, Source
 from executive.config.validate import Problems, shown
 from executive.core.chance import generator
 from executive.core.errors import ConfigError
+from executive.run import ResolvedScenario
 from executive.run.resolve import resolve
-from executive.run.resolved import ResolvedScenario
 from proving.campaign.shape import CampaignFile
 from proving.inject import INSTRUMENT as FAULTS
 from proving.inject import RESERVED

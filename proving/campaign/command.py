@@ -34,7 +34,7 @@ class _CampaignGroup(CommandGroup):
 
 @click.group(cls=_CampaignGroup, prefix="campaign.")
 def campaign() -> None:
-    """Run one scenario many times over, with what varies drawn per case.
+    """Run one scenario many times; each case draws the values that vary.
 
     `longarm campaign FILE` is short for `longarm campaign run FILE`.
 
@@ -44,14 +44,17 @@ def campaign() -> None:
 
 @click.command()
 @click.argument("file", type=PATH)
-@click.option("--runs", type=click.IntRange(1), help="How often, instead of what the file says.")
+@click.option("--runs", type=click.IntRange(1), help="Number of runs; overrides the file.")
 @click.option(
-    "-j", "slots", type=click.IntRange(1), help="How many at once.  [default: 1; dask: all threads]"
+    "-j",
+    "slots",
+    type=click.IntRange(1),
+    help="Number of cases run in parallel.  [default: 1; dask: all threads]",
 )
 @click.option("--engine", type=click.Choice(["local", "dask"]), default="local", show_default=True)
-@click.option("--address", metavar="URL", help="Where the Dask scheduler is, such as tcp://host:8786.")
-@click.option("--resume", is_flag=True, help="Carry on where an earlier start ended, however it ended.")
-@click.option("--out", type=PATH, help="The campaign's folder.  [default: runs/NAME-SEED]")
+@click.option("--address", metavar="URL", help="Address of the Dask scheduler, such as tcp://host:8786.")
+@click.option("--resume", is_flag=True, help="Continue an earlier start of this campaign, however it ended.")
+@click.option("--out", type=PATH, help="Folder of the campaign.  [default: runs/NAME-SEED]")
 @click.option("--json", "as_json", is_flag=True, help="Print campaign.json and nothing else.")
 @click.option("--quiet", is_flag=True, help="Print nothing.")
 def run(
@@ -67,7 +70,7 @@ def run(
 ) -> int:
     """Run a campaign file. Exit 0 if every verdict is good.
 
-    Ctrl-C, a kill, a power cut: with --resume it goes on, nothing lost and nothing repeated.
+    After Ctrl-C, a kill or a power cut, --resume continues: no case is lost, none is repeated.
 
     Example: longarm campaign random_faults --runs 500 -j 2 --out runs/faults
     """
@@ -79,7 +82,7 @@ def run(
     from proving.campaign_report import write_campaign_report
 
     if (engine == "dask") != (address is not None):
-        raise click.UsageError("got --engine dask without --address, or the other way round, expected both")
+        raise click.UsageError("--engine dask needs --address, and --address needs --engine dask")
     loaded, watch = load_campaign(find_campaign(file)), Stopwatch()
     repeats = runs or loaded.file.runs
     folder = CampaignFolder(out or _default_folder(loaded, resume))
@@ -103,7 +106,7 @@ def run(
 @click.command()
 @click.argument("campaign_dir", type=PATH)
 @click.argument("case", type=click.IntRange(0))
-@click.option("--out", type=PATH, help="Keep the new run here.")
+@click.option("--out", type=PATH, help="Folder to keep the new run in.")
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON and nothing else.")
 def rerun(campaign_dir: Path, case: int, out: Path | None, as_json: bool) -> int:
     """Run one case of a campaign again in a fresh process; say whether it came out bit for bit the same.
@@ -157,7 +160,7 @@ def _engine(name: str, address: str | None, slots: int | None) -> Engine:
 
 def _default_folder(loaded: Campaign, resume: bool) -> Path:
     """`runs/NAME-SEED`, the next free one, or to resume the last that is there."""
-    from executive.record.run_folder import free_folder
+    from executive.record import free_folder
 
     name = f"{loaded.file.campaign}-{loaded.file.seed}"
     free = free_folder(Path("runs"), name)

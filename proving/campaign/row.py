@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from executive.core import units
 from executive.core.units import UnitError
+from proving.campaign.result import CaseResult
 
 _TRUTH = (
     *("final_error_m", "max_cross_track_m", "driven_beyond_off_track_m"),
@@ -68,34 +69,38 @@ SCHEMA = pa.schema(
 """Every row of every campaign has these columns, whatever became of the case."""
 
 
-def row_of(campaign: str, result: Mapping[str, Any]) -> dict[str, Any]:
-    """The row of a case from its `result.json`, of which the part `case` tells how it ended."""
-    case, truth, fixes = result["case"], result["truth"], result["localisation"]
-    safety = list(result.get("safety") or ())
-    drawn: Mapping[str, str] = case["drawn"]
+def row_of(campaign: str, result: CaseResult) -> dict[str, object]:
+    """The row of a case, by the columns of SCHEMA; ValueError if no campaign has judged it."""
+    run, case = result.run, result.case
+    if case is None:
+        raise ValueError("got a run that is no case of a campaign")
+    truth, fixes, safety = asdict(run.truth), run.localisation, [asdict(row) for row in run.safety or ()]
     return {
         "campaign": campaign,
-        "case": case["index"],
-        **{name: case[name] for name in ("draw", "setting", "verdict", "message", "class", "cause")},
-        **{name: case[name] for name in ("attempts", "wall_s", "memory_bytes")},
-        **{name: result[name] for name in ("scenario", "seed", "tier", "outcome", "reason")},
-        **{name: result[name] for name in ("mission_s", "digest", "strategies", "expectations", "wall")},
+        "case": case.index,
+        "class": case.class_,
+        **{name: getattr(case, name) for name in ("draw", "setting", "verdict", "message", "cause")},
+        **{name: getattr(case, name) for name in ("attempts", "wall_s", "memory_bytes")},
+        **{name: getattr(run, name) for name in ("scenario", "seed", "tier", "outcome", "reason")},
+        **{name: getattr(run, name) for name in ("mission_s", "digest", "wall")},
         **{name: truth[name] for name in (*_TRUTH, "waypoint_errors_m")},
-        **{name: fixes[name] for name in _FIXES},
-        "fixes": fixes["count"],
-        "fixes_failed": fixes["failed"],
-        "waypoints_total": result["waypoints"]["total"],
-        "waypoints_reached": result["waypoints"]["reached"],
-        "faults": result["faults"],
-        "false_alarms": len(result["false_alarms"]) if "false_alarms" in result else None,
+        **{name: getattr(fixes, name) for name in _FIXES},
+        "fixes": fixes.count,
+        "fixes_failed": fixes.failed,
+        "waypoints_total": run.waypoints.total,
+        "waypoints_reached": run.waypoints.reached,
+        "strategies": [asdict(row) for row in run.strategies],
+        "faults": [asdict(row) for row in run.faults],
+        "false_alarms": len(run.false_alarms),
+        "expectations": [asdict(row) for row in run.expectations],
         "safety": safety,
         "safe": all(row["met"] is not False for row in safety) if safety else None,
-        "drawn": dict(drawn),
-        "drawn_si": {key: value for key, text in drawn.items() if (value := _si(text)) is not None},
+        "drawn": dict(case.drawn),
+        "drawn_si": {key: value for key, text in case.drawn.items() if (value := _si(text)) is not None},
     }
 
 
-def write_row(path: Path, row: Mapping[str, Any]) -> None:
+def write_row(path: Path, row: Mapping[str, object]) -> None:
     """A file of one row. Keys of nested rows that the schema does not know are left out."""
     pq.write_table(pa.Table.from_pylist([dict(row)], schema=SCHEMA), path, compression="zstd")
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import closing
+from dataclasses import replace
 from typing import Any
 
 from executive.config.source import Source
 from executive.core.clock import Stopwatch
-from executive.record.versions import versions
+from executive.record import versions
+from executive.run import ResolvedScenario
 from executive.run.resolve import resolve
-from executive.run.resolved import ResolvedScenario
 from proving.campaign.cases import Campaign, Drawn, Prepared, case_number, prepared, put, seed_of
 from proving.campaign.folder import CampaignFolder
+from proving.campaign.result import CaseNote, CaseResult, write_case
 from proving.campaign.row import row_of, write_row
 from proving.campaign.tally import Ended, Tally
 from proving.engine import Case, Ending, Limits, settle
@@ -123,9 +124,9 @@ class _Run:
     def ended(self, ending: Ending) -> Ended:
         """Judge a case and keep it."""
         drawn, ready = self._under_way.pop(ending.case.key)
-        result = settle(ending)
-        for row in result["faults"]:
-            row["kind"] = ready.kinds.get(row["name"])
+        settled = settle(ending)
+        faults = tuple(replace(fault, kind=ready.kinds.get(fault.name, "")) for fault in settled.faults)
+        result = replace(settled, seed=drawn.seed, faults=faults)
         verdict = judged(ending, result, self._terms)
         ended = Ended(
             number=drawn.number,
@@ -134,40 +135,40 @@ class _Run:
             verdict=str(verdict.word),
             kind=str(ending.kind),
             cause=ending.cause,
-            outcome=result["outcome"],
+            outcome=result.outcome,
             wall_s=round(ending.wall_s, 3),
-            inside_s=round(sum(result["wall"].get(part, 0.0) for part in INSIDE), 3),
-            digest=result["digest"],
+            inside_s=round(sum(result.wall.get(part) or 0.0 for part in INSIDE), 3),
+            digest=result.digest,
         )
-        self._write(drawn, ending, verdict.message, ended, result)
+        self._write(ending, CaseResult(result, _note(drawn, ending, verdict.message, ended)))
         self._folder.keep(ended)
         self._tally.add(ended)
         return ended
 
-    def _write(
-        self, drawn: Drawn, ending: Ending, message: str, ended: Ended, result: dict[str, Any]
-    ) -> None:
+    def _write(self, ending: Ending, result: CaseResult) -> None:
         folder = ending.case.folder
         if not (folder / "scenario.yaml").is_file() and ending.case.text is not None:
             (folder / "scenario.yaml").write_text(ending.case.text)  # what was refused, or never begun
-        result["seed"] = drawn.seed
-        result["case"] = {
-            "index": drawn.number,
-            "draw": drawn.draw,
-            "setting": drawn.setting,
-            "verdict": ended.verdict,
-            "message": message,
-            "class": ended.kind,
-            "cause": ending.cause,
-            "detail": ending.detail,
-            "attempts": ending.attempts,
-            "wall_s": ended.wall_s,
-            "memory_bytes": ending.memory_bytes,
-            "drawn": drawn.parameters,
-            "journal": ended.to_json(),
-        }
-        (folder / "result.json").write_text(json.dumps(result, indent=2, allow_nan=False) + "\n")
+        write_case(folder / "result.json", result)
         write_row(folder / "result.parquet", row_of(self._campaign.file.campaign, result))
+
+
+def _note(drawn: Drawn, ending: Ending, message: str, ended: Ended) -> CaseNote:
+    return CaseNote(
+        index=drawn.number,
+        setting=drawn.setting,
+        verdict=ended.verdict,
+        message=message,
+        class_=ended.kind,
+        cause=ending.cause,
+        detail=ending.detail,
+        draw=drawn.draw,
+        attempts=ending.attempts,
+        wall_s=ended.wall_s,
+        memory_bytes=ending.memory_bytes,
+        drawn=drawn.parameters,
+        journal=ended.to_json(),
+    )
 
 
 def base_of(campaign: Campaign) -> ResolvedScenario:

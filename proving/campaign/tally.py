@@ -37,7 +37,7 @@ class Ended:
         """Whether it says anything of the system: not if it was the infrastructure, or tested nothing."""
         return self.verdict != Word.INVALID and self.kind in (CaseClass.OK, CaseClass.SUT)
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """A line of the journal."""
         rest = {name: value for name, value in vars(self).items() if name not in ("number", "kind")}
         return {"event": "ended", "case": self.number, "class": self.kind, **rest}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
+from executive.report.figure import counted
 from executive.report.tables import Table
 from proving.campaign_report.case import Case
 from proving.campaign_report.gather import Campaign
@@ -29,7 +30,7 @@ class Alarms:
 def alarms(campaign: Campaign) -> Alarms:
     """Add up the alarms that `result.json` tells of as ones that no fault can have caused."""
     cases = campaign.counted
-    found = {case.index: [str(row["hypothesis"]) for row in _rows(case)] for case in cases}
+    found = {case.index: [alarm.hypothesis for alarm in case.result.false_alarms] for case in cases}
     return Alarms(
         cases=len(cases),
         without_fault=sum(not case.faults for case in cases),
@@ -40,14 +41,9 @@ def alarms(campaign: Campaign) -> Alarms:
     )
 
 
-def _rows(case: Case) -> list[dict[str, object]]:
-    return list(case.result.get("false_alarms") or [])
-
-
 def _tried(case: Case) -> list[str]:
     """The strategies chosen before any fault took effect."""
-    rows = case.result.get("strategies") or []
-    return [str(row["name"]) for row in rows if row["t_s"] < case.quiet_s]
+    return [row.name for row in case.result.strategies if row.t_s < case.quiet_s]
 
 
 def alarm_table(found: Alarms) -> Table:
@@ -56,11 +52,15 @@ def alarm_table(found: Alarms) -> Table:
         (name.replace("_", " "), str(count), f"{count / found.hours:.2f}" if found.hours else "–")
         for name, count in found.hypotheses.most_common()
     )
-    tried = ", ".join(f"{name} {count} times" for name, count in found.strategies.most_common()) or "none"
+    tried = (
+        ", ".join(f"{name} {counted(count, 'time')}" for name, count in found.strategies.most_common())
+        or "none"
+    )
     note = (
         f"From {found.hours:.1f} h of mission time before any fault took effect: the whole of "
-        f"{found.without_fault} cases without a fault, the beginnings of {found.cases - found.without_fault} "
-        f"others. {len(found.alarmed)} cases had an alarm: some hypothesis other than the nominal one led. "
+        f"{counted(found.without_fault, 'case')} without a fault, the beginnings of "
+        f"{counted(found.cases - found.without_fault, 'case')} with one. "
+        f"{counted(len(found.alarmed), 'case')} had an alarm: another hypothesis than the nominal one led. "
         f"Strategies tried in that time: {tried}. Loose sand and poor views are real, so that not every "
         "alarm is an error; but each costs time."
     )

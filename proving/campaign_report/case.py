@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from executive.core.units import UnitError, parse
+from executive.record import FaultStages, RunResult
+from proving.campaign.result import CaseNote, CaseResult
 from proving.inject.entries import RESERVED
 
 LOST = "lost"
@@ -21,60 +23,55 @@ BROKE = frozenset({INFRASTRUCTURE, "refused"})
 _PASSED = frozenset({"passed", "expected failure"})
 
 
-@dataclass(frozen=True)
-class FaultRow:
-    """A fault of a case. Mission times [s], None for never; latencies count from its taking effect."""
-
-    kind: str
-    name: str
-    fired: bool
-    t_on_s: float | None
-    t_detected_s: float | None
-    t_isolated_s: float | None
-    t_recovered_s: float | None
-    concluded: str | None
-    expected: str | None
-
-    def latency_s(self, until_s: float | None) -> float | None:
-        """From taking effect until then [s]; None for never."""
-        return None if until_s is None or self.t_on_s is None else max(until_s - self.t_on_s, 0.0)
-
-
 @dataclass(frozen=True, eq=False)
 class Case:
-    """`result` is empty where the case left none; `journal` is what the campaign noted at its end."""
+    """`found` is None where the case left no result; `journal` is what the campaign noted at its end."""
 
     index: int
     folder: Path
-    result: Mapping[str, Any]
+    found: CaseResult | None
     scenario: Mapping[str, Any]
     journal: Mapping[str, Any]
 
     @property
-    def about(self) -> Mapping[str, Any]:
-        """What the campaign says of the case: seed, setting, verdict, class."""
-        return {**self.journal, **(self.result.get("case") or {})}
+    def result(self) -> RunResult:
+        """What its run came to; empty where it left none."""
+        return self.found.run if self.found is not None else RunResult()
+
+    @cached_property
+    def note(self) -> CaseNote:
+        """What the campaign says of the case, in its result or else in its journal."""
+        if self.found is not None and self.found.case is not None:
+            return self.found.case
+        told = self.journal
+        return CaseNote(
+            self.index,
+            setting=str(told.get("setting") or ""),
+            verdict=told.get("verdict"),
+            class_=str(told.get("class") or ""),
+            cause=str(told.get("cause") or ""),
+            detail=str(told.get("detail") or ""),
+        )
 
     @property
     def setting(self) -> str:
-        return str(self.about.get("setting") or "")
+        return self.note.setting
 
     @property
     def seed(self) -> int | None:
         """The seed; cases of different settings with the same seed met the same conditions."""
-        seed = self.about.get("seed", self.result.get("seed"))
+        seed = self.result.seed if self.result.seed is not None else self.journal.get("seed")
         return None if seed is None else int(seed)
 
     @property
     def class_(self) -> str:
         """`infrastructure` or `sut` (the system under test) where something broke, empty otherwise."""
-        found = str(self.about.get("class") or "")
-        return "" if found == "ok" else found
+        return "" if self.note.class_ == "ok" else self.note.class_
 
     @property
     def outcome(self) -> str:
         """One of `result.json`'s outcomes, or `lost` where the case did not come to its own end."""
-        return LOST if self.class_ in BROKE else str(self.result.get("outcome") or LOST)
+        return LOST if self.class_ in BROKE else self.result.outcome or LOST
 
     @property
     def counts(self) -> bool:
@@ -85,38 +82,32 @@ class Case:
     @cached_property
     def passed(self) -> bool:
         """The campaign's verdict; where it gave none: reached, or what was expected, and safe."""
-        if self.about.get("verdict") is not None:
-            return str(self.about["verdict"]) in _PASSED
-        rows = self.result.get("expectations") or []
-        as_expected = all(row["met"] for row in rows) if rows else self.outcome == "reached"
+        if self.note.verdict is not None:
+            return self.note.verdict in _PASSED
+        rows = self.result.expectations
+        as_expected = all(row.met for row in rows) if rows else self.outcome == "reached"
         return as_expected and not self.unsafe and self.outcome not in (LOST, "invalid")
 
     @cached_property
     def unsafe(self) -> tuple[str, ...]:
         """The safety expectations broken, in words; empty where the rover stayed safe or nothing is known."""
-        rows = self.result.get("safety")
-        if rows is not None:
-            return tuple(str(row["text"]) for row in rows if row.get("met") is False)
-        beyond_m = self.truth("driven_beyond_off_track_m") or 0.0
+        if self.result.safety is not None:
+            return tuple(row.text for row in self.result.safety if row.met is False)
+        beyond_m = self.result.truth.driven_beyond_off_track_m or 0.0
         return (
             (f"drove {beyond_m * 1000:.0f} mm beyond the off-track margin",) if beyond_m >= BEYOND_M else ()
         )
-
-    def truth(self, key: str) -> float | None:
-        """One of the true figures, None where it is not known."""
-        value = (self.result.get("truth") or {}).get(key)
-        return None if value is None else float(value)
 
     @cached_property
     def quiet_s(self) -> float:
         """Mission time during which no fault can have caused anything: until the first took effect [s]."""
         fired = [row.t_on_s for row in self.faults if row.t_on_s is not None]
-        return min([float(self.result.get("mission_s") or 0.0), *fired])
+        return min([self.result.mission_s, *fired])
 
     @property
     def cross_share(self) -> float | None:
         """Worst true cross-track error in units of the mission's narrowest off-track margin."""
-        worst, margin = self.truth("max_cross_track_m"), self.off_track_m
+        worst, margin = self.result.truth.max_cross_track_m, self.off_track_m
         return None if worst is None or not margin else worst / margin
 
     @cached_property
@@ -137,32 +128,17 @@ class Case:
         return None if limit is None else math.degrees(limit)
 
     @cached_property
-    def faults(self) -> tuple[FaultRow, ...]:
-        """Every fault that was asked for, fired or not."""
+    def faults(self) -> tuple[FaultStages, ...]:
+        """Every fault that was asked for, fired or not, with its kind."""
         kinds = dict(_declared(self.scenario.get("faults") or []))
-        rows = {str(row["name"]): row for row in self.result.get("faults") or []}
-        names = dict.fromkeys([*kinds, *rows])
-        return tuple(_row(name, kinds.get(name, name), rows.get(name, {})) for name in names)
+        rows = {fault.name: fault for fault in self.result.faults}
+        found = (rows.get(name, FaultStages(name)) for name in dict.fromkeys([*kinds, *rows]))
+        return tuple(replace(each, kind=each.kind or kinds.get(each.name, each.name)) for each in found)
 
     @cached_property
     def kinds(self) -> tuple[str, ...]:
         """The kinds of its faults, each once, in alphabetical order."""
         return tuple(sorted({row.kind for row in self.faults}))
-
-
-def _row(name: str, kind: str, row: Mapping[str, Any]) -> FaultRow:
-    detected = row.get("t_detected_s")
-    return FaultRow(
-        kind=str(row.get("kind") or kind),
-        name=name,
-        fired=bool(row.get("fired")),
-        t_on_s=row.get("t_on_s"),
-        t_detected_s=detected,
-        t_isolated_s=row.get("t_isolated_s"),
-        t_recovered_s=row.get("t_recovered_s"),
-        concluded=row.get("hypothesis") if detected is not None else None,
-        expected=row.get("expected") or (row.get("hypothesis") if "expected" not in row else None),
-    )
 
 
 def _declared(entries: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:

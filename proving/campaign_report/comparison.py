@@ -51,7 +51,7 @@ def _comparison(campaign: Campaign, first: str, second: str, key: str) -> Compar
 
 
 def _errors_m(couples: tuple[tuple[Case, Case], ...]) -> list[tuple[float, float]]:
-    known = [(a.truth("final_error_m"), b.truth("final_error_m")) for a, b in couples]
+    known = [(a.result.truth.final_error_m, b.result.truth.final_error_m) for a, b in couples]
     return [(a, b) for a, b in known if a is not None and b is not None]
 
 
@@ -134,7 +134,7 @@ def _scatter(found: Comparison) -> str:
     y = Scale(math.log(low), math.log(high), _TOP + _SIDE, _TOP)
     body = [_frame(x, y), svg.line(x.start, y.start, x.end, y.end, class_="mean")]
     for a, b in found.couples:
-        errors = a.truth("final_error_m"), b.truth("final_error_m")
+        errors = a.result.truth.final_error_m, b.result.truth.final_error_m
         if errors[0] is None or errors[1] is None:
             continue
         colour = "var(--muted)" if a.passed == b.passed else SERIES[0] if a.passed else SERIES[1]

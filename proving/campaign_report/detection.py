@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 
+from executive.record import FaultStages
 from executive.report import svg
 from executive.report.axes import legend
 from executive.report.figure import Figure
-from proving.campaign_report.case import FaultRow
 from proving.campaign_report.gather import Campaign
 
 _LEFT, _TOP, _CELL_W, _CELL_H, _WIDTH = 216.0, 104.0, 104.0, 30.0, 1100.0
 UNDETECTED = "not detected"
 
 
-def matrix(rows: list[FaultRow]) -> dict[str, Counter[str]]:
+def matrix(rows: list[FaultStages]) -> dict[str, Counter[str]]:
     """Kind of fault → how often each diagnosis was concluded, for the faults that fired."""
     counts: dict[str, Counter[str]] = {}
     for row in rows:

@@ -6,7 +6,7 @@ from html import escape
 
 from executive.report import svg
 from executive.report.axes import Scale, legend
-from executive.report.figure import Figure
+from executive.report.figure import Figure, counted
 from proving.campaign_report.case import Case
 from proving.campaign_report.gather import Campaign
 from proving.campaign_report.groups import ENDS, SERIES, Group, by_fault, ends, success
@@ -42,8 +42,8 @@ def forest(campaign: Campaign) -> Figure | None:
 def _caption(campaign: Campaign) -> str:
     uncounted = len(campaign.cases) - len(campaign.counted)
     left_out = (
-        f" {uncounted} cases are shown on the right but not counted on the left: they were lost to the "
-        "infrastructure, or a fault never fired."
+        f" {counted(uncounted, 'case')} on the right not counted on the left: lost to the infrastructure, or "
+        "a fault never fired."
         if uncounted
         else ""
     )

@@ -12,6 +12,7 @@ from typing import Any
 import yaml
 
 from executive.core.errors import RecordError
+from proving.campaign.result import CaseResult, read_case
 from proving.campaign_report.case import Case
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times faster where libyaml is there
@@ -82,16 +83,14 @@ def _case(index: int, folder: Path, journal: Mapping[str, Any], missing: list[st
     return Case(index, folder, _result(folder, missing), _scenario(folder / "scenario.yaml"), journal)
 
 
-def _result(folder: Path, missing: list[str]) -> Mapping[str, Any]:
-    path = folder / "result.json"
-    if not path.is_file():
-        return {}
+def _result(folder: Path, missing: list[str]) -> CaseResult | None:
     try:
-        found: Mapping[str, Any] = json.loads(path.read_text())
-        return found
-    except ValueError:
+        return read_case(folder / "result.json")
+    except FileNotFoundError:
+        return None
+    except RecordError:
         missing.append(f"cases/{folder.name}/result.json cannot be read: the case counts as lost")
-        return {}
+        return None
 
 
 def _scenario(path: Path) -> Mapping[str, Any]:

@@ -7,10 +7,11 @@ from collections import Counter
 
 import numpy as np
 
-from executive.report.figure import duration
+from executive.record import FaultStages
+from executive.report.figure import counted, duration
 from executive.report.tiles import Tile
 from proving.campaign_report.alarms import Alarms
-from proving.campaign_report.case import INFRASTRUCTURE, FaultRow
+from proving.campaign_report.case import INFRASTRUCTURE
 from proving.campaign_report.gather import Campaign
 from proving.campaign_report.groups import success
 from proving.campaign_report.lengths import length
@@ -21,11 +22,16 @@ _CLASSES = {INFRASTRUCTURE: "lost to the infrastructure", "sut": "broke the syst
 def headline(campaign: Campaign) -> list[Tile]:
     """The three figures that matter most: safety, success, cases."""
     unsafe = [case for case in campaign.cases if case.unsafe]
-    known = sum(bool(case.result) for case in campaign.cases)
+    known = sum(case.found is not None for case in campaign.cases)
     worst = ", ".join(f"case {case.index}" for case in unsafe[:4]) + (" …" if len(unsafe) > 4 else "")
     safety = "safety violation" if len(unsafe) == 1 else "safety violations"
     return [
-        Tile(safety, str(len(unsafe)), worst or f"in {known} cases judged", "bad" if unsafe else "good"),
+        Tile(
+            safety,
+            str(len(unsafe)),
+            worst or f"in {counted(known, 'case')} judged",
+            "bad" if unsafe else "good",
+        ),
         _success(campaign),
         Tile("cases", str(len(campaign.cases)), _classes(campaign)),
     ]
@@ -34,9 +40,9 @@ def headline(campaign: Campaign) -> list[Tile]:
 def tiles(campaign: Campaign, alarms: Alarms) -> list[Tile]:
     """The rest, a row of smaller ones."""
     fired = [row for case in campaign.counted for row in case.faults if row.fired]
-    errors = [e for case in campaign.counted if (e := case.truth("final_error_m")) is not None]
+    errors = [e for case in campaign.counted if (e := case.result.truth.final_error_m) is not None]
     shares = [s for case in campaign.counted if (s := case.cross_share) is not None]
-    mission_s = [float(case.result.get("mission_s") or 0.0) for case in campaign.cases]
+    mission_s = [case.result.mission_s for case in campaign.cases]
     per_hour = f"{alarms.total / alarms.hours:.2f} an hour" if alarms.hours else "no time without a fault"
     median = float(np.median(errors)) if errors else None
     return [
@@ -71,7 +77,7 @@ def _classes(campaign: Campaign) -> str:
     return ", ".join(parts) or "none lost, none invalid"
 
 
-def _isolated(fired: list[FaultRow]) -> Tile:
+def _isolated(fired: list[FaultStages]) -> Tile:
     right = sum(row.concluded is not None and row.concluded == row.expected for row in fired)
     asked = sum(row.expected is not None for row in fired)
     value = f"{100 * right / asked:.0f} %" if asked else "–"
@@ -85,5 +91,5 @@ def _tail(errors: list[float]) -> str:
 
 
 def _wall(campaign: Campaign) -> str:
-    wall_s = sum(float(case.result.get("wall_s") or 0.0) for case in campaign.cases)
+    wall_s = sum((case.result.wall_s or 0.0) for case in campaign.cases)
     return f"in {duration(wall_s)} of computing".replace("\u00a0", " ")

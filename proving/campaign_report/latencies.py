@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from executive.record import FaultStages
 from executive.report import svg
 from executive.report.axes import Scale, legend
-from executive.report.figure import Figure, duration
-from proving.campaign_report.case import FaultRow
+from executive.report.figure import Figure, counted, duration
 from proving.campaign_report.gather import Campaign
 
 _WIDTH, _LEFT, _TOP, _ROW, _PANEL, _GAP = 1100.0, 150.0, 34.0, 26.0, 255.0, 62.0
@@ -23,7 +23,7 @@ class Stage(NamedTuple):
     """One of the things that should follow a fault, and the time at which it did."""
 
     title: str
-    time_s: Callable[[FaultRow], float | None]
+    time_s: Callable[[FaultStages], float | None]
     colour: str
 
 
@@ -76,7 +76,7 @@ def _frame(scale: Scale, title: str, bottom: float) -> str:
     return svg.text(scale.start, 14, title, class_="axis") + never + "".join(body)
 
 
-def _strip(rows: list[FaultRow], stage: Stage, scale: Scale, y: float) -> str:
+def _strip(rows: list[FaultStages], stage: Stage, scale: Scale, y: float) -> str:
     times = [row.latency_s(stage.time_s(row)) for row in rows]
     known = np.array([t for t in times if t is not None])
     never = len(times) - len(known)
@@ -102,6 +102,6 @@ def _box(known: np.ndarray[tuple[int], np.dtype[np.float64]], scale: Scale, y: f
 
 def _words(kind: str, title: str, known: np.ndarray[tuple[int], np.dtype[np.float64]], never: int) -> str:
     if not len(known):
-        return f"{kind}: never {title}, in {never} cases"
+        return f"{kind}: never {title}, in {counted(never, 'case')}"
     middle = duration(float(np.median(known)))
     return f"{kind}: {title} after {middle} in the median of {len(known)}, never in {never}"

@@ -33,8 +33,8 @@ def rows(campaign: Campaign) -> list[tuple[Cell, ...]]:
 
 
 def _row(campaign: Campaign, case: Case) -> tuple[Cell, ...]:
-    error, share, tilt = case.truth("final_error_m"), case.cross_share, case.truth("max_tilt_deg")
-    mission_s = case.result.get("mission_s")
+    error, share, tilt = case.result.truth.final_error_m, case.cross_share, case.result.truth.max_tilt_deg
+    mission_s = case.result.mission_s if case.found is not None else None
     diagnosed = sorted({row.concluded for row in case.faults if row.concluded})
     return (
         _number(case.index, str(case.index)),
@@ -46,7 +46,7 @@ def _row(campaign: Campaign, case: Case) -> tuple[Cell, ...]:
         _number(error, length(error)),
         _number(share, "–" if share is None else f"{share:.2f}"),
         _number(tilt, "–" if tilt is None else f"{tilt:.1f}°"),
-        _text(", ".join(str(row["name"]) for row in case.result.get("strategies") or []) or "–"),
+        _text(", ".join(row.name for row in case.result.strategies) or "–"),
         _text(", ".join(diagnosed) or "–"),
         _number(mission_s, "–" if mission_s is None else duration(mission_s)),
         Cell(command(campaign, case), str(case.index), "code"),
@@ -56,7 +56,7 @@ def _row(campaign: Campaign, case: Case) -> tuple[Cell, ...]:
 def _verdict(case: Case) -> Cell:
     if case.unsafe:
         return Cell("unsafe", "0", "bad")
-    words = str(case.about.get("verdict") or ("passed" if case.passed else "failed"))
+    words = str(case.note.verdict or ("passed" if case.passed else "failed"))
     if case.class_:
         words += f" ({case.class_})"
     return Cell(words, "2" if case.passed else "1", "good" if case.passed else "care")

@@ -16,7 +16,7 @@ def margins(campaign: Campaign) -> Figure | None:
     placed = [
         (case, x, y)
         for case in campaign.cases
-        if (x := case.cross_share) is not None and (y := case.truth("max_tilt_deg")) is not None
+        if (x := case.cross_share) is not None and (y := case.result.truth.max_tilt_deg) is not None
     ]
     if not placed:
         return None

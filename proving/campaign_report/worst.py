@@ -29,7 +29,7 @@ def ranked(cases: Iterable[Case]) -> list[Case]:
             not case.unsafe,
             case.class_ == INFRASTRUCTURE,
             _ORDER.index(end_of(case)),
-            -(case.truth("final_error_m") or 0.0),
+            -(case.result.truth.final_error_m or 0.0),
             case.index,
         ),
     )
@@ -77,7 +77,7 @@ def command(campaign: Campaign, case: Case) -> str:
 def story(case: Case) -> str:
     """What happened, in one line: the faults, how it ended and why, what was broken."""
     faults = ", ".join(_fault(row.kind, row.t_on_s, row.fired) for row in case.faults) or "no fault"
-    tried = len(case.result.get("strategies") or [])
+    tried = len(case.result.strategies)
     remedies = f"; {tried} {'strategy' if tried == 1 else 'strategies'} tried" if tried else ""
     broken = "; ".join(case.unsafe)
     return f"{faults}{remedies}; {_ending(case)}" + (f". Unsafe: {broken}" if broken else "")
@@ -90,22 +90,22 @@ def _fault(kind: str, t_on_s: float | None, fired: bool) -> str:
 
 def _ending(case: Case) -> str:
     if case.outcome == LOST:
-        cause = case.about.get("detail") or case.about.get("cause") or "left no result"
+        cause = case.note.detail or case.note.cause or "left no result"
         return f"lost ({case.class_ or 'unknown'}): {cause}"
-    if case.result.get("reason"):
-        why = _PATH.sub(r"\1", str(case.result["reason"]))  # of a node's path its name is enough
+    if case.result.reason:
+        why = _PATH.sub(r"\1", str(case.result.reason))  # of a node's path its name is enough
         return f"{ENDS[end_of(case)][0]}: {why}"
-    unmet = [str(row["text"]) for row in case.result.get("expectations") or [] if not row["met"]]
+    unmet = [row.text for row in case.result.expectations if not row.met]
     return f"{ENDS[end_of(case)][0]}" + (f", but not {unmet[0]}" if unmet else "")
 
 
 def _card(campaign: Campaign, case: Case) -> str:
     words, colour = ENDS[end_of(case)]
-    error = case.truth("final_error_m")
+    error = case.result.truth.final_error_m
     figures = [
         f"error {length(error)}",
         f"cross-track {_share(case.cross_share)} of the margin",
-        f"tilt {_degrees(case.truth('max_tilt_deg'))}",
+        f"tilt {_degrees(case.result.truth.max_tilt_deg)}",
     ]
     setting = f" · {escape(case.setting)}" if case.setting else ""
     flag = "<span class='flag'>unsafe</span>" if case.unsafe else ""

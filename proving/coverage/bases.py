@@ -11,8 +11,7 @@ from executive.core import registry
 from executive.core.errors import ConfigError
 from executive.pool import Strategy
 from executive.record import History, events
-from executive.run.fault import FAULT_KIND, load_fault
-from executive.run.resolved import ResolvedScenario
+from executive.run import FAULT_KIND, ResolvedScenario, load_fault
 from proving.coverage.items import Item
 from proving.coverage.recipes import Fault, at_node, for_item
 from proving.coverage.universe import Universe

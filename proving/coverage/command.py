@@ -40,9 +40,9 @@ def verdict(found: Coverage, least: float | None) -> int:
 
 @click.command("coverage")
 @click.argument("runs", nargs=-1, required=True, type=FILE)
-@click.option("--excuses", type=FILE, help="A file that says what cannot happen, and why.")
+@click.option("--excuses", type=FILE, help="File of impossible outcomes, with reasons.")
 @click.option("--min", "least", metavar="SHARE", help="Fail below this coverage, such as 90 %.")
-@click.option("-o", "--output", type=FILE, help="Draw the covered trees to this .html or .svg file.")
+@click.option("-o", "--output", type=FILE, help="Write a drawing of the covered trees: .html or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def coverage(
     runs: tuple[Path, ...], excuses: Path | None, least: str | None, output: Path | None, as_json: bool

@@ -7,6 +7,7 @@ from dataclasses import replace
 from html import escape
 from pathlib import Path
 
+from executive.report.figure import counted
 from executive.report.show.boxes import Box, Tag, boxes
 from executive.report.show.palette import COVERAGE
 from executive.report.show.svg import svg
@@ -77,7 +78,7 @@ def _tags(items: list[Item], coverage: Coverage) -> Iterator[Tag]:
     for item in items:
         count = coverage.seen.count[item]
         if count:
-            tip = f"{count} times, first in {coverage.seen.first[item]}"
+            tip = f"{counted(count, 'time')}, first in {coverage.seen.first[item]}"
             yield Tag(item.word, PAINTS.get(item.word, "failure"), tip)
         else:
             yield Tag(item.word, None, coverage.excused.get(item, "not seen"))

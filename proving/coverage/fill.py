@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from executive.run.resolved import ResolvedScenario
+from executive.run import ResolvedScenario
 from executive.tree.strategies import load_strategies, strategy_trees
 from proving.coverage.excuses import Excuses
 from proving.coverage.items import Item

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from executive.report.figure import counted
 from proving.coverage.excuses import Excuses, read_excuses
 from proving.coverage.fill import Filled, file_name, text
 from proving.coverage.fill import fill as look
@@ -17,13 +18,22 @@ FILE = click.Path(path_type=Path)
 
 @click.command("fill")
 @click.argument("paths", nargs=-1, required=True, type=FILE)
-@click.option("-o", "--output", type=FILE, default=Path("proposed"), show_default=True, help="The folder.")
-@click.option("-j", "slots", default=1, show_default=True, metavar="N", help="Runs at the same time.")
-@click.option("--runs", type=click.IntRange(min=1), default=100, show_default=True, help="At most so many.")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    default=Path("proposed"),
+    show_default=True,
+    help="Folder for the scenarios proposed.",
+)
+@click.option("-j", "slots", default=1, show_default=True, metavar="N", help="Number of runs in parallel.")
+@click.option(
+    "--runs", type=click.IntRange(min=1), default=100, show_default=True, help="Maximum number of runs."
+)
 @click.option("--tier", help="Tier of every run.")
-@click.option("--excuses", type=FILE, help="A file that says what cannot happen, and why.")
+@click.option("--excuses", type=FILE, help="File of impossible outcomes, with reasons.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--quiet", is_flag=True, help="No progress on stderr.")
+@click.option("--quiet", is_flag=True, help="Show no progress on stderr.")
 def fill(
     paths: tuple[Path, ...],
     output: Path,
@@ -54,8 +64,9 @@ def fill(
         click.echo(json.dumps(_data(found, files), indent=2))
     else:
         click.echo(
-            f"coverage {found.before:.1%} → {found.after:.1%} with {len(found.proposals)} scenarios "
-            f"in {output}, after {found.runs} runs; {len(found.wrong)} went wrong"
+            f"coverage {found.before:.1%} → {found.after:.1%} with "
+            f"{counted(len(found.proposals), 'scenario')} in {output}, "
+            f"after {counted(found.runs, 'run')}; {len(found.wrong)} went wrong"
         )
     return 0
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from executive.core.types import Reason
 from executive.pool import Strategy
-from executive.run.fault import FaultSpec, every_fault
+from executive.run import FaultSpec, every_fault
 from proving.coverage.items import Item
 
 Fault = dict[str, Any]

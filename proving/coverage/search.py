@@ -9,7 +9,7 @@ from shutil import rmtree
 
 from executive.pool import Strategy
 from executive.record import History
-from executive.run.resolved import ResolvedScenario
+from executive.run import ResolvedScenario
 from proving.coverage.bases import Base, candidates, resolved_or_none
 from proving.coverage.coverage import Coverage, put_together
 from proving.coverage.excuses import Excuses
@@ -85,7 +85,7 @@ class Search:
             self.bases.append(Base.of(data, history, self.universe))
         if of_suite or not (useful or wrong):
             return None
-        return Proposal(data, fills, frozenset(alone.count), str(result["outcome"]), wrong)
+        return Proposal(data, fills, frozenset(alone.count), result.outcome, wrong)
 
     def coverage(self) -> Coverage:
         """Of the suite and of what was found so far."""

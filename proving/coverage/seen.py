@@ -11,9 +11,7 @@ from typing import Any
 from executive.config.source import read_text
 from executive.core.errors import ConfigError, RecordError
 from executive.core.types import Call, Reason
-from executive.record import events
-from executive.record.evidence import leading
-from executive.record.history import History
+from executive.record import History, events, leading
 from executive.tree.load import load_tree
 from executive.tree.strategies import load_strategies, strategy_trees
 from proving.coverage.items import Item

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import Any
 
+from executive.report.figure import counted
 from proving.coverage.coverage import Coverage, Share
 
 PLURALS = {
@@ -81,6 +82,6 @@ def _holes(coverage: Coverage) -> Iterator[str]:
 
 def _oddities(coverage: Coverage) -> Iterator[str]:
     for item, count in sorted(coverage.seen.undeclared.items()):
-        yield f"not declared: {item.name} failed with {item.word}, {count} times"
+        yield f"not declared: {item.name} failed with {item.word}, {counted(count, 'time')}"
     if strangers := coverage.seen.strangers:
         yield f"not in the trees as they are now: {len(strangers)} nodes, such as {min(strangers)}"

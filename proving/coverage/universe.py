@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from executive.core import registry
 from executive.core.types import Reason
 from executive.isc import hypothesis_names
-from executive.run.fault import FAULT_KIND
+from executive.run import FAULT_KIND
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 from proving.coverage import abilities
 from proving.coverage.abilities import Abilities

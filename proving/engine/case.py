@@ -8,7 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from executive.record.run_folder import RUN_FILES
+from executive.record import RUN_FILES
 
 GIB = 2**30
 LOG = "output.log"

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-import json
 import signal
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import yaml
 
-from executive.core.errors import LongarmError
-from executive.record import History, events
-from executive.record.recorder import Recorder
-from executive.record.result import RunFigures, summarise, write_result
+from executive.core.errors import LongarmError, RecordError
+from executive.record import (
+    History,
+    Recorder,
+    RunFigures,
+    RunResult,
+    events,
+    read_result,
+    summarise,
+    write_result,
+)
+from executive.run import ResolvedScenario
 from executive.run.judging import judged
 from executive.run.resolve import resolve_scenario
-from executive.run.resolved import ResolvedScenario
 from proving.engine import child
 from proving.engine.case import LOG, Case, CaseClass, Ending
 from proving.engine.server import Death
@@ -80,19 +86,18 @@ def _planted_kills(scenario: Path) -> set[str]:
     return {entry.get("name", PLANTED_KILL) for entry in data.get("faults", ()) if PLANTED_KILL in entry}
 
 
-def settle(ending: Ending) -> dict[str, Any]:
+def settle(ending: Ending) -> RunResult:
     """The `result.json` of an ended case: as the child wrote it, else from what its record holds."""
     folder = ending.case.folder
     _drop_empty_log(folder)
     written = folder / "result.json"
     if written.is_file():
-        with suppress(json.JSONDecodeError):  # cut off in the middle
-            kept: dict[str, Any] = json.loads(written.read_text())
-            return kept
+        with suppress(RecordError):  # cut off in the middle
+            return read_result(written)
     return _summarised(ending)
 
 
-def _summarised(ending: Ending) -> dict[str, Any]:
+def _summarised(ending: Ending) -> RunResult:
     folder, scenario = ending.case.folder, _scenario(ending.case.folder)
     record = folder / "record.mcap"
     folder.mkdir(parents=True, exist_ok=True)
@@ -102,11 +107,11 @@ def _summarised(ending: Ending) -> dict[str, Any]:
     figures = RunFigures(ending.wall_s, waypoints_total=total)
     if scenario is not None:
         result, _ = judged(scenario, folder, figures)
-        result |= {"scenario": scenario.name, "seed": scenario.seed, "tier": scenario.tier}
+        result = replace(result, scenario=scenario.name, seed=scenario.seed, tier=scenario.tier)
     else:
         result = summarise(record, folder / "truth.mcap", figures)
     said = ending.detail.splitlines()[:1]
-    result |= {"outcome": "error", "reason": ": ".join([ending.cause, *said])}
+    result = replace(result, outcome="error", reason=": ".join([ending.cause, *said]))
     write_result(folder / "result.json", result)
     return result
 
@@ -119,8 +124,8 @@ def _scenario(folder: Path) -> ResolvedScenario | None:
 
 def reason_in(folder: Path) -> str:
     """The reason that `result.json` gives, nothing if there is none."""
-    with suppress(OSError, json.JSONDecodeError):
-        return str(json.loads((folder / "result.json").read_text())["reason"] or "")
+    with suppress(OSError, RecordError):
+        return read_result(folder / "result.json").reason or ""
     return ""
 
 

@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 from executive.core.clock import Clock
 from executive.core.ports import Action
 from executive.core.types import Outcome, Reason
-from executive.run.fault import Fault
+from executive.run import Fault
 
 T = TypeVar("T")
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from executive.core.devices import CAMERAS
 from executive.core.ports import Action, Cameras, Devices
 from executive.core.types import (
     LEFT,
@@ -25,7 +26,7 @@ from executive.core.types import (
     Shot,
 )
 from executive.core.units import Duration
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted, Held
 from proving.faults.parameters import SIDES, Nothing, OneCamera, Parameters
 
@@ -37,7 +38,7 @@ class CameraFault(Counted):
     """What becomes of a shot's answer. Subclasses write `images` and `centres`, or `take`."""
 
     def wrap(self, devices: Devices, cue: Cue) -> Devices:
-        return replace(devices, cameras=_FaultyCameras(devices.cameras, cue, self))
+        return devices.replace(CAMERAS, _FaultyCameras(devices[CAMERAS], cue, self))
 
     def take(self, cameras: Cameras, shot: Shot, cue: Cue) -> Action[Frames]:
         """Take the shot while the fault is there."""

@@ -8,6 +8,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from executive.core.devices import INCLINOMETER
 from executive.core.ports import (
     Action,
     Devices,
@@ -23,7 +24,7 @@ from executive.core.types import (
     Vec2,
 )
 from executive.core.units import Angle, Length
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted
 from proving.faults.parameters import Nothing, Parameters
 
@@ -130,7 +131,7 @@ class InclinometerBias(Counted):
         self.bias = parameters
 
     def wrap(self, devices: Devices, cue: Cue) -> Devices:
-        return replace(devices, inclinometer=_BiasedInclinometer(devices.inclinometer, self, cue))
+        return devices.replace(INCLINOMETER, _BiasedInclinometer(devices[INCLINOMETER], self, cue))
 
 
 @dataclass

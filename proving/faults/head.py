@@ -7,6 +7,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from executive.core.devices import CAMERAS, HEAD
 from executive.core.ports import (
     Action,
     Cameras,
@@ -22,7 +23,7 @@ from executive.core.types import (
     Vec2,
 )
 from executive.core.units import Angle
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted
 from proving.faults.parameters import Parameters
 
@@ -41,11 +42,8 @@ class HeadEncoderOffset(Counted):
         self._pan_rad, self._tilt_rad = parameters.pan, parameters.tilt
 
     def wrap(self, devices: Devices, cue: Cue) -> Devices:
-        return replace(
-            devices,
-            head=_OffsetHead(devices.head, self, cue),
-            cameras=_OffsetCameras(devices.cameras, self, cue),
-        )
+        off = devices.replace(HEAD, _OffsetHead(devices[HEAD], self, cue))
+        return off.replace(CAMERAS, _OffsetCameras(devices[CAMERAS], self, cue))
 
     def offset_rad(self, cue: Cue) -> Vec2:
         return self._pan_rad * cue.level(), self._tilt_rad * cue.level()

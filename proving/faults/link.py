@@ -7,10 +7,11 @@ from typing import Annotated
 
 from pydantic import Field
 
+from executive.core.devices import LINK
 from executive.core.ports import Action, Devices, Link
 from executive.core.types import Call, Outcome, Reason
 from executive.core.units import Duration, Fraction
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.altered import Altered, Counted, Held, Unanswered
 from proving.faults.parameters import Nothing, Parameters
 
@@ -21,7 +22,7 @@ class LinkFault(Counted):
     """What becomes of calls. Subclasses write `call`, which is asked for every call, active or not."""
 
     def wrap(self, devices: Devices, cue: Cue) -> Devices:
-        return replace(devices, link=_FaultyLink(devices.link, cue, self))
+        return devices.replace(LINK, _FaultyLink(devices[LINK], cue, self))
 
     def call(self, link: Link, call: Call, cue: Cue) -> Action[str]:
         raise TypeError(f"{type(self).__name__} does nothing to a call")

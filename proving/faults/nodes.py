@@ -13,8 +13,7 @@ from pydantic_core import PydanticCustomError
 from executive.core.errors import NodeRaised
 from executive.core.types import Outcome, Reason
 from executive.core.units import Duration
-from executive.run.fault import Cue, FaultSpec
-from executive.run.instrument import TreeParts
+from executive.run import Cue, FaultSpec, TreeParts
 from proving.faults.parameters import Parameters
 from proving.faults.reticked import NodeFault, Reticked, root_of
 

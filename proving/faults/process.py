@@ -6,7 +6,7 @@ import os
 import signal
 
 from executive.core.ports import Backend
-from executive.run.fault import Fault, FaultSpec
+from executive.run import Fault, FaultSpec
 from proving.faults.parameters import Nothing
 
 

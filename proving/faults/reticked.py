@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from executive.run.fault import Cue
-from executive.run.instrument import TreeParts
+from executive.run import Cue, TreeParts
 from executive.tree.addresses import means
 from proving.faults.altered import Counted
 

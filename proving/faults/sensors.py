@@ -21,7 +21,7 @@ from executive.core.types import (
     Window,
 )
 from executive.core.units import Fraction
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.cameras import CameraFault, Counts, no_ground, with_counts, with_ground
 from proving.faults.parameters import SIDES, OneCamera, Parameters
 

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from executive.core.units import Duration
 from executive.pool import Situation, Strategy
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.altered import Counted
 from proving.faults.parameters import Parameters
 from proving.faults.reticked import NodeFault, Reticked

@@ -10,7 +10,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from executive.core.ports import Action, Devices, Tracks
+from executive.core.devices import DRIVE
+from executive.core.ports import Action, Devices, Drive
 from executive.core.types import (
     Array,
     Outcome,
@@ -18,7 +19,7 @@ from executive.core.types import (
     TrackReading,
 )
 from executive.core.units import Current, Fraction
-from executive.run.fault import Cue, FaultSpec
+from executive.run import Cue, FaultSpec
 from proving.faults.altered import Counted
 from proving.faults.parameters import SIDES, OneTrack
 
@@ -32,7 +33,7 @@ class EncoderFault(Counted):
         self.side = SIDES.index(parameters.side)
 
     def wrap(self, devices: Devices, cue: Cue) -> Devices:
-        return replace(devices, tracks=_MiscountedTracks(devices.tracks, cue, self))
+        return devices.replace(DRIVE, _MiscountedTracks(devices[DRIVE], cue, self))
 
     def rate(self, level: float) -> float:
         """What is counted of a metre of belt on average; the motor stops when it has counted enough."""
@@ -93,7 +94,7 @@ class EncoderLostCounts(EncoderFault):
 class _MiscountedTracks:
     """Counts on from what it said last, so that nothing jumps at onset or end."""
 
-    def __init__(self, inner: Tracks, cue: Cue, fault: EncoderFault) -> None:
+    def __init__(self, inner: Drive, cue: Cue, fault: EncoderFault) -> None:
         self.inner, self._cue, self._fault = inner, cue, fault
         self._true_m = travels(inner.read())
         self.said_m = self._true_m.copy()
@@ -187,14 +188,14 @@ class CurrentsGarbage(Counted):
                 return replace(reading, left_current_a=garbage)
             return replace(reading, right_current_a=garbage)
 
-        return replace(devices, tracks=_AlteredTracks(devices.tracks, garbled))
+        return devices.replace(DRIVE, _AlteredTracks(devices[DRIVE], garbled))
 
 
 @dataclass
 class _AlteredTracks:
     """Tracks whose readings are altered, and nothing else."""
 
-    inner: Tracks
+    inner: Drive
     alter: Callable[[TrackReading], TrackReading]
 
     def drive(self, left_m: float, right_m: float, speed_m_s: float) -> Action[TrackReading]:

@@ -11,8 +11,7 @@ from py_trees.behaviour import Behaviour
 from pydantic import Field
 
 from executive.core.units import Fraction
-from executive.run.fault import Cue, FaultSpec
-from executive.run.instrument import TreeParts
+from executive.run import Cue, FaultSpec, TreeParts
 from proving.faults.parameters import Parameters
 from proving.faults.reticked import NodeFault, Reticked
 

@@ -27,9 +27,8 @@ from executive.core.units import (
     written,
 )
 from executive.pool.kind import STRATEGY_KIND
-from executive.record.signals import live_types
-from executive.run.fault import FAULT_KIND, FaultSpec
-from executive.run.instrument import Setting
+from executive.record import live_types
+from executive.run import FAULT_KIND, FaultSpec, Setting
 from executive.tree.expressions.guards import parse_guard
 from executive.tree.expressions.typed import GuardError
 from proving.inject import profiles as profiles

@@ -8,7 +8,7 @@ from typing import Any
 from executive.config.source import Source
 from executive.config.validate import Strict, parse
 from executive.core.errors import Problem
-from executive.run.instrument import Context, Instrument, InstrumentSpec, Schema, Setting
+from executive.run import Context, Instrument, InstrumentSpec, Schema, Setting
 from executive.tree.spec import TreeSpec
 from proving.inject import schema
 from proving.inject.entries import ResolvedFault, fault_entries, ungrouped

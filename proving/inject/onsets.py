@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from executive.core.types import Call
-from executive.record import events
-from executive.record.signals import heard, live_types
+from executive.record import events, heard, live_types
 from executive.tree.addresses import means
 from executive.tree.expressions.guards import parse_guard
 from proving.inject.triggers import Trigger

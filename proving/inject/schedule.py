@@ -9,8 +9,7 @@ from executive.core.chance import generator
 from executive.core.ports import Devices, Localizer
 from executive.pool import Strategy
 from executive.record import events
-from executive.run.fault import Cue, Fault
-from executive.run.instrument import Context, Instrument, TreeParts
+from executive.run import Context, Cue, Fault, Instrument, TreeParts
 from proving.inject.entries import ResolvedFault
 from proving.inject.onsets import Onset, Sightings
 from proving.inject.profiles import Shape

@@ -7,7 +7,7 @@ from typing import Any
 from executive.config import distributions
 from executive.config.describe import properties
 from executive.core.units import DURATION, articled
-from executive.run.fault import FaultSpec, every_fault
+from executive.run import FaultSpec, every_fault
 from proving.inject.profiles import STEP, Profile
 from proving.inject.triggers import Trigger
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from executive.config.source import Source
 from executive.core.errors import Problem
-from executive.run.targets import Named, strange_nodes, strange_strategies, strange_values
+from executive.run import Named, strange_nodes, strange_strategies, strange_values
 from executive.tree.spec import TreeSpec
 from proving.inject.entries import ResolvedFault
 

@@ -10,7 +10,7 @@ from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
 from executive.isc import hypothesis_names
 from executive.pool.kind import STRATEGY_KIND
-from executive.run.targets import Named
+from executive.run import Named
 from executive.tree.expressions.typed import GuardError
 from proving.judge.expect import LISTS_OF_STEPS, Expect
 from proving.judge.temporal import (

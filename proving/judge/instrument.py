@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from executive.config.source import Source
 from executive.config.validate import parse
 from executive.core.errors import Problem
-from executive.record.rows import Row
-from executive.run.instrument import InstrumentSpec, Judgement, Records, Schema, Setting
-from executive.run.targets import strange_nodes
+from executive.record import JudgedRow
+from executive.run import InstrumentSpec, Judgement, Records, Schema, Setting, strange_nodes
 from executive.tree.spec import TreeSpec
 from proving.inject import INSTRUMENT as FAULTS
 from proving.judge.expect import LISTS, Expect, JudgeKeys, with_lists
@@ -53,20 +52,20 @@ class Expectations(InstrumentSpec[JudgeKeys]):
         result, history, truth = records.result, records.history, records.truth
         rows = tuple(judge(settings.expect, result, history, truth))
         safety = tuple(safety_rows(history, truth, records.rig))
-        return Judgement(rows, safety, met(settings.expect, str(result["outcome"]), rows, safety))
+        return Judgement(rows, safety, met(settings.expect, result.outcome, rows, safety))
 
 
 INSTRUMENT = Expectations()
 
 
-def met(expect: Expect, outcome: str, rows: Sequence[Row], safety: Sequence[Row]) -> bool | None:
+def met(expect: Expect, outcome: str, rows: Sequence[JudgedRow], safety: Sequence[JudgedRow]) -> bool | None:
     """Whether a run was as it should be: all it was expected to come to, and safe.
 
     None where nothing was expected, or where the run proves nothing. An error must itself be expected.
     """
     if outcome == "invalid" or not rows:
         return None
-    kept = all(row["met"] for row in rows) and all(row["met"] is not False for row in safety)
+    kept = all(row.met for row in rows) and all(row.met is not False for row in safety)
     return kept and (outcome != "error" or outcome in expect.outcome)
 
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from executive.record import History, JudgedRow, row
 from executive.record.events import NodeChange
-from executive.record.history import History
-from executive.record.rows import Row, row
 from executive.tree.addresses import means
 from proving.judge.expect import Times
 
@@ -50,7 +49,7 @@ def _ends(history: History) -> Iterator[End]:
         running.discard(change.path)
 
 
-def in_order(steps: Sequence[Mapping[str, str]], seen: Sequence[End], end_s: float) -> Iterator[Row]:
+def in_order(steps: Sequence[Mapping[str, str]], seen: Sequence[End], end_s: float) -> Iterator[JudgedRow]:
     """A row a step: met if it came after the step before it, or in its tick. None is, after one missed."""
     left, since_s, missed = list(seen), 0.0, False
     for number, step in enumerate(steps, start=1):
@@ -65,23 +64,24 @@ def in_order(steps: Sequence[Mapping[str, str]], seen: Sequence[End], end_s: flo
         yield row(text, True)
 
 
-def never(steps: Sequence[Mapping[str, str]], seen: Sequence[End]) -> Iterator[Row]:
+def never(steps: Sequence[Mapping[str, str]], seen: Sequence[End]) -> Iterator[JudgedRow]:
     """A row a step: met if it never came."""
     for step in steps:
         first_s = next((end.time_s for end in seen if end.is_of(step)), None)
         yield row(f"never {told(step)}", first_s is None, t_violation_s=first_s)
 
 
-def times(wanted: Sequence[Times], seen: Sequence[End], end_s: float) -> Iterator[Row]:
+def times(wanted: Sequence[Times], seen: Sequence[End], end_s: float) -> Iterator[JudgedRow]:
     """A row each: met if it came as often as is allowed."""
     for each in wanted:
         came_s = [end.time_s for end in seen if end.is_of(each.of)]
         least, most = each.at_least, each.at_most
         bounds = [f"at least {least}"] * (least > 0) + [f"at most {most}"] * (most is not None)
+        noun = "time" if (most if most is not None else least) == 1 else "times"
         spare = min(len(came_s) - least, len(came_s) if most is None else most - len(came_s))
         too_many = most is not None and len(came_s) > most
         at_s = came_s[most] if too_many and most is not None else end_s
-        yield row(f"{told(each.of)} {' and '.join(bounds)} times", spare >= 0, spare, "", at_s)
+        yield row(f"{told(each.of)} {' and '.join(bounds)} {noun}", spare >= 0, spare, "", at_s)
 
 
 def told(step: Mapping[str, str]) -> str:

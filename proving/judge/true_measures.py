@@ -8,14 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from executive.core.types import Array
+from executive.record import History, JudgedRow, row
 from executive.record.events import (
     SegmentEvent,
     Start,
     Stop,
     Telemetry,
 )
-from executive.record.history import History
-from executive.record.rows import Row, row
 from executive.record.truth import (
     CrossTrack,
     Track,
@@ -42,7 +41,7 @@ TILT = Measure("deg", lambda track, cross: np.degrees(track.tilt_rad()))
 TETHER = Measure("N", lambda track, cross: track.tether_n)
 
 
-def below(text: str, measure: Measure, limit: float, history: History, world: History) -> Row:
+def below(text: str, measure: Measure, limit: float, history: History, world: History) -> JudgedRow:
     """Whether a measure stayed below a limit, both in its unit; unknown (None) without truth."""
     track = Track.of(world)
     if track is None:
@@ -56,7 +55,7 @@ def below(text: str, measure: Measure, limit: float, history: History, world: Hi
     return row(text, since_s is None, limit - float(values[known].max()), measure.unit, since_s)
 
 
-def at_rest(history: History, world: History) -> Row:
+def at_rest(history: History, world: History) -> JudgedRow:
     """Whether the rover stood still in the last tick, by truth and by what the tracks reported.
 
     Unknown (None) where the record breaks off, as of a killed process: nobody saw the end of that drive.

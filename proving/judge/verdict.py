@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
-from executive.record.rows import first_violated
-from executive.run.resolved import ResolvedScenario
+from executive.record import JudgedRow, RunResult, first_violated
+from executive.run import ResolvedScenario
 from proving.engine import Case, CaseClass, Ending
 from proving.judge.instrument import INSTRUMENT
 
@@ -54,19 +53,19 @@ class Terms:
         return cls("error" in judged.expect.outcome, judged.expected_to_fail)
 
 
-def judged(ending: Ending, result: Mapping[str, Any], terms: Terms) -> Verdict:
+def judged(ending: Ending, result: RunResult, terms: Terms) -> Verdict:
     """The verdict on a case that has ended.
 
     Safety rows hold for every run; where the failure is expected, it must come, and be one of expectations.
     """
     if ending.kind in (CaseClass.INFRASTRUCTURE, CaseClass.REFUSED):
         return Verdict(Word.ERROR, _one_line(f"{ending.kind}, {ending.cause}: {ending.detail}"))
-    if result["outcome"] == "error" and not terms.error_expected:
-        said = f"{ending.cause}: {ending.detail}" if ending.cause else str(result["reason"])
+    if result.outcome == "error" and not terms.error_expected:
+        said = f"{ending.cause}: {ending.detail}" if ending.cause else str(result.reason)
         return Verdict(Word.ERROR, _one_line(said))
-    if result["outcome"] == "invalid":
-        return Verdict(Word.INVALID, str(result["reason"]))
-    if unsafe := first_violation(result.get("safety") or (), result):
+    if result.outcome == "invalid":
+        return Verdict(Word.INVALID, str(result.reason))
+    if unsafe := first_violation(result.safety or (), result):
         return Verdict(Word.FAILED, f"unsafe: {unsafe}")
     broken = _broken(result)
     if terms.expected_to_fail is None:
@@ -76,25 +75,24 @@ def judged(ending: Ending, result: Mapping[str, Any], terms: Terms) -> Verdict:
     return Verdict(Word.FAILED, f"passed, though expected to fail: {terms.expected_to_fail}")
 
 
-def _broken(result: Mapping[str, Any]) -> str:
-    if result["expectations"]:
-        return first_violation(result["expectations"], result)
-    if result["outcome"] == "reached":
+def _broken(result: RunResult) -> str:
+    if result.expectations:
+        return first_violation(result.expectations, result)
+    if result.outcome == "reached":
         return ""
-    why = f", {result['reason']}" if result["reason"] else ""
-    return f"ended {result['outcome']} at {result['mission_s']:.0f} s{why}"
+    why = f", {result.reason}" if result.reason else ""
+    return f"ended {result.outcome} at {result.mission_s:.0f} s{why}"
 
 
-def first_violation(rows: Any, result: Mapping[str, Any]) -> str:
+def first_violation(rows: Iterable[JudgedRow], result: RunResult) -> str:
     """The row that was violated first: what, when, by how much. Nothing if all hold or are not known."""
     row = first_violated(rows)
     if row is None:
         return ""
-    told, by = row.get("t_violation_s"), row.get("robustness")
-    when_s = result["mission_s"] if told is None else told
-    margin = f" (robustness {by:.3g})" if isinstance(by, float) else ""
-    ended = f"; ended {result['outcome']}" + (f", {result['reason']}" if result["reason"] else "")
-    return f"{row['text']}: not met at {when_s:.0f} s{margin}{ended}"
+    when_s = result.mission_s if row.t_violation_s is None else row.t_violation_s
+    margin = f" (robustness {row.robustness:.3g})" if isinstance(row.robustness, float) else ""
+    ended = f"; ended {result.outcome}" + (f", {result.reason}" if result.reason else "")
+    return f"{row.text}: not met at {when_s:.0f} s{margin}{ended}"
 
 
 def repeat_command(case: Case, seed: int) -> str:

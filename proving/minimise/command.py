@@ -12,12 +12,14 @@ FILE = click.Path(path_type=Path)
 
 @click.command("minimise")
 @click.argument("case", type=FILE)
-@click.option("-o", "--output", type=FILE, help="The file to write; NAME-minimal.yaml without it.")
+@click.option("-o", "--output", type=FILE, help="File to write.  [default: NAME-minimal.yaml]")
 @click.option("--seed", type=int, help="Replace the scenario's seed.")
 @click.option("--tier", help="Replace the scenario's tier.")
-@click.option("--runs", type=click.IntRange(min=1), default=200, show_default=True, help="At most so many.")
+@click.option(
+    "--runs", type=click.IntRange(min=1), default=200, show_default=True, help="Maximum number of runs."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--quiet", is_flag=True, help="No progress on stderr.")
+@click.option("--quiet", is_flag=True, help="Show no progress on stderr.")
 def minimise(
     case: Path,
     output: Path | None,
@@ -34,12 +36,13 @@ def minimise(
 
     Example: longarm minimise runs/rock_on_path-7 -o scenarios/rock_minimal.yaml
     """
+    from executive.report.figure import counted
     from proving.minimise.minimise import minimise as shrink
 
     silent = quiet or as_json
     made = shrink(case, seed, tier, runs, lambda step: None if silent else click.echo(step, err=True))
     if made.failure is None:
-        click.echo(f"{case}: got a case that does not fail, expected one that does", err=True)
+        click.echo(f"{case}: this case does not fail; minimise needs one that does", err=True)
         return 1
     file = output or Path(f"{made.before['scenario']}-minimal.yaml")
     file.write_text(made.text(case))
@@ -50,6 +53,8 @@ def minimise(
         return 0
     for noun, size in sizes.items():
         click.echo(f"{size['before']} {noun} → {size['after']}")
-    used_up = ", all there were: it may be smaller yet" if made.exhausted else ""
-    click.echo(f"{file} still fails with {made.failure}, after {made.runs} runs{used_up}")
+    spent = f"after {counted(made.runs, 'run')}"
+    if made.exhausted:
+        spent = f"stopped {spent} (--runs {runs}); may shrink further"
+    click.echo(f"{file} still fails with {made.failure}; {spent}")
     return 0

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from executive.run.resolved import ResolvedScenario
+from executive.record import RunResult, first_violated
+from executive.run import ResolvedScenario
 from proving.engine import CaseClass, Ending
 from proving.judge import INSTRUMENT as JUDGE
 
@@ -26,20 +24,20 @@ class Failure:
         return f"{self.kind}: {self.text}"
 
 
-def failure_of(ending: Ending, result: Mapping[str, Any], scenario: ResolvedScenario) -> Failure | None:
+def failure_of(ending: Ending, result: RunResult, scenario: ResolvedScenario) -> Failure | None:
     """The failure of a case that has ended; None if it is as it should be."""
     if ending.kind in (CaseClass.INFRASTRUCTURE, CaseClass.REFUSED):
         return Failure(str(ending.kind), ending.cause)
-    if result["outcome"] == "error" and not _allowed(scenario):
-        return Failure("error", _what(ending, str(result["reason"])))
-    if result["outcome"] == "invalid":
-        return Failure("invalid", str(result["reason"]).split(" never ")[0])
-    for kind, rows in (("unsafe", result.get("safety") or ()), ("expectation", result["expectations"])):
-        missed = [row for row in rows if row["met"] is False]
-        if missed:
-            return Failure(kind, str(min(missed, key=_when_s)["text"]))
-    if not result["expectations"] and result["outcome"] != "reached":
-        return Failure("outcome", str(result["outcome"]))
+    if result.outcome == "error" and not _allowed(scenario):
+        return Failure("error", _what(ending, str(result.reason)))
+    if result.outcome == "invalid":
+        return Failure("invalid", str(result.reason).split(" never ")[0])
+    for kind, rows in (("unsafe", result.safety or ()), ("expectation", result.expectations)):
+        first = first_violated(rows)
+        if first is not None:
+            return Failure(kind, first.text)
+    if not result.expectations and result.outcome != "reached":
+        return Failure("outcome", str(result.outcome))
     return None
 
 
@@ -53,8 +51,3 @@ def _what(ending: Ending, reason: str) -> str:
         return ending.cause
     raised = _EXCEPTION.search(reason)
     return raised[1] if raised else reason
-
-
-def _when_s(row: Mapping[str, Any]) -> float:
-    told = row.get("t_violation_s")
-    return math.inf if told is None else float(told)

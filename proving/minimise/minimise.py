@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 
 import yaml
 
+from executive.report.figure import counted
 from executive.run.resolve import resolve_scenario
 from proving.engine.server import ForkServer
 from proving.minimise.failure import Failure
@@ -34,7 +35,7 @@ class Minimised:
     def text(self, source: Path) -> str:
         """The file: says what it is, then the scenario."""
         sizes = ", ".join(f"{before} {noun} → {after}" for noun, before, after in self.sizes())
-        head = f"# Minimised from {source.name} in {self.runs} runs: {sizes}.\n"
+        head = f"# Minimised from {source.name} in {counted(self.runs, 'run')}: {sizes}.\n"
         return f"{head}# It fails with {self.failure}\n{written(self.after)}"
 
     def sizes(self) -> list[tuple[str, int, int]]:

@@ -11,7 +11,8 @@ from executive.core.units import (
     quantity,
     split,
 )
-from executive.run.fault import FaultSpec, load_fault
+from executive.record import FaultStages
+from executive.run import FaultSpec, load_fault
 from proving.inject.entries import RESERVED
 from proving.minimise.fewer import fewer
 from proving.minimise.trier import Trier
@@ -169,6 +170,6 @@ def _lasts_s(trier: Trier, index: int) -> float:
     given = trier.best["faults"][index].get("for")
     if given is not None:
         return quantity(given, DURATION)
-    row: Data = next((r for r in trier.result["faults"] if r["name"] == _name(trier, index)), {})
-    onset_s = row.get("t_armed_s", row.get("t_on_s")) or 0.0
-    return float(trier.result["mission_s"]) - float(onset_s)
+    name = _name(trier, index)
+    fault = next((each for each in trier.result.faults if each.name == name), FaultStages(name))
+    return trier.result.mission_s - (fault.t_armed_s or 0.0)

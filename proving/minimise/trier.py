@@ -8,7 +8,8 @@ from pathlib import Path
 from shutil import rmtree
 
 from executive.core.errors import ConfigError
-from executive.run.resolved import ResolvedScenario
+from executive.record import RunResult
+from executive.run import ResolvedScenario
 from proving.engine import Case, Limits, settle
 from proving.engine.server import ForkServer
 from proving.engine.supervisor import run_alone
@@ -30,7 +31,7 @@ class Trier:
     most: int
     tell: Callable[[str], None]
     best: Data = field(default_factory=dict)
-    result: Data = field(default_factory=dict)
+    result: RunResult = RunResult()  # noqa: RUF009  (frozen)
     wanted: Failure | None = None
     limits: Limits = field(default_factory=Limits)
     runs: int = 0
@@ -79,7 +80,7 @@ class Trier:
                 self.result = result
         return self.known[same]
 
-    def _run(self, data: Data, scenario: ResolvedScenario) -> tuple[Failure | None, Data, float]:
+    def _run(self, data: Data, scenario: ResolvedScenario) -> tuple[Failure | None, RunResult, float]:
         self.runs += 1
         file, folder = self.folder / "case.yaml", self.folder / "run"
         file.write_text(written(data))

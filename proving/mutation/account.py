@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
+from executive.record import RunResult
 from proving.engine import Ending, settle
 from proving.judge.verdict import Terms, Verdict, Word, judged
 
-IDENTITY = ("digest", "wall", "wall_s", "case")
-"""What differs between two runs that did the same, told by their texts and clocks alone."""
 NO_EXPECTATION = (Word.INVALID, Word.ERROR)
 
 
@@ -21,7 +18,8 @@ class Account:
     verdict: Verdict
     met: frozenset[str]
     missed: tuple[str, ...]
-    behaviour: Mapping[str, Any]
+    behaviour: RunResult
+    """The result but for what differs between two runs that did the same, told by texts and clocks alone."""
 
     def lost(self, before: Account) -> str | None:
         """The first thing that held `before` and no longer does, None if all still does."""
@@ -39,10 +37,10 @@ class Account:
 def account(ending: Ending, terms: Terms) -> Account:
     """The account of a case that has ended."""
     result = settle(ending)
-    rows = [*(result.get("safety") or ()), *result["expectations"]]
+    rows = [*(result.safety or ()), *result.expectations]
     return Account(
         judged(ending, result, terms),
-        frozenset(str(row["text"]) for row in rows if row["met"] is True),
-        tuple(str(row["text"]) for row in rows if row["met"] is False),
-        {key: value for key, value in result.items() if key not in IDENTITY},
+        frozenset(row.text for row in rows if row.met is True),
+        tuple(row.text for row in rows if row.met is False),
+        replace(result, digest="", wall={}, wall_s=None),
     )

@@ -15,17 +15,19 @@ FILE = click.Path(path_type=Path)
 @click.command("mutate")
 @click.argument("tree")
 @click.argument("paths", nargs=-1, required=True, type=FILE)
-@click.option("-j", "slots", default=1, show_default=True, metavar="N", help="Runs at the same time.")
-@click.option("--limit", type=click.IntRange(min=1), metavar="N", help="Try so many, drawn at random.")
-@click.option("--seed", default=0, show_default=True, help="Of that draw.")
-@click.option("--only", multiple=True, metavar="TREE", help="Change this tree file only; may be repeated.")
+@click.option("-j", "slots", default=1, show_default=True, metavar="N", help="Number of runs in parallel.")
+@click.option("--limit", type=click.IntRange(min=1), metavar="N", help="Maximum number of mutants, sampled.")
+@click.option("--seed", default=0, show_default=True, help="Seed of the sampling.")
+@click.option("--only", multiple=True, metavar="TREE", help="Mutate this tree file only; may be repeated.")
 @click.option("--tier", help="Tier of every run.")
 @click.option("--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Replace a value in every run.")
-@click.option("--excuses", type=FILE, help="A file that says which mutants are equivalent, and why.")
-@click.option("--believe", is_flag=True, help="Do not try mutants that are said to be equivalent.")
-@click.option("--min", "least", metavar="SHARE", help="Fail if fewer mutants are noticed, such as 85 %.")
+@click.option("--excuses", type=FILE, help="File of equivalent mutants, with reasons.")
+@click.option("--believe", is_flag=True, help="Skip the mutants that --excuses names as equivalent.")
+@click.option(
+    "--min", "least", metavar="SHARE", help="Fail if a smaller share of mutants is noticed, such as 85 %."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--quiet", is_flag=True, help="No progress on stderr.")
+@click.option("--quiet", is_flag=True, help="Show no progress on stderr.")
 def mutate(
     tree: str,
     paths: tuple[Path, ...],

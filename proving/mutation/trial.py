@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 from shutil import rmtree
 
-from executive.record.history import History
+from executive.record import History
 from proving.coverage.seen import Seen
 from proving.coverage.trials import Trial
 from proving.coverage.universe import Universe
@@ -46,7 +46,7 @@ class Baseline:
 
     def limits(self) -> tuple[float, Limits]:
         """Mission and wall time that a mutant may take [s]."""
-        mission_s = SLOWER * float(self.account.behaviour["mission_s"]) + GRACE_S
+        mission_s = SLOWER * self.account.behaviour.mission_s + GRACE_S
         limit_s = min(mission_s, self.collected.scenario.time_limit_s)
         return limit_s, Limits(wall_s=WALL_SLOWER * self.wall_s + WALL_GRACE_S)
 

@@ -11,8 +11,8 @@ from executive.config.find import find, shown
 from executive.config.source import Mark, read
 from executive.config.validate import Problems
 from executive.core.errors import ConfigError
+from executive.run import ResolvedScenario
 from executive.run.resolve import resolve_source
-from executive.run.resolved import ResolvedScenario
 
 SUFFIXES = (".yaml", ".yml")
 _TOP_LEVEL_SCENARIO = re.compile(r"^scenario\s*:", re.M)

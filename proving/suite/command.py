@@ -19,7 +19,14 @@ _COLOURS = {"passed": "green", "expected failure": "yellow"}
 
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("-j", "slots", type=click.IntRange(1), default=1, show_default=True, help="How many at once.")
+@click.option(
+    "-j",
+    "slots",
+    type=click.IntRange(1),
+    default=1,
+    show_default=True,
+    help="Number of scenarios run in parallel.",
+)
 @click.option(
     "--junit", type=click.Path(path_type=Path, dir_okay=False), help="Write JUnit XML to this file."
 )
@@ -30,7 +37,7 @@ _COLOURS = {"passed": "green", "expected failure": "yellow"}
     type=click.Path(path_type=Path, file_okay=False),
     default=Path("runs/test"),
     show_default=True,
-    help="Where the run folders go.",
+    help="Folder for the run folders.",
 )
 @click.option(
     "--wall",
@@ -38,11 +45,17 @@ _COLOURS = {"passed": "green", "expected failure": "yellow"}
     type=click.FloatRange(min=1),
     default=900,
     show_default=True,
-    help="Wall time after which a scenario counts as hanging [s].",
+    help="Wall time limit of a scenario; beyond it, it counts as hanging [s].",
 )
-@click.option("--coverage", is_flag=True, help="Say afterwards what the suite has exercised.")
-@click.option("--coverage-min", metavar="SHARE", help="The same, and fail below this share, such as 90%.")
-@click.option("--excuses", type=click.Path(path_type=Path), help="The same, and what cannot happen, and why.")
+@click.option("--coverage", is_flag=True, help="Report what the suite has exercised.")
+@click.option(
+    "--coverage-min", metavar="SHARE", help="Fail below this coverage, such as 90% (implies --coverage)."
+)
+@click.option(
+    "--excuses",
+    type=click.Path(path_type=Path),
+    help="File of impossible outcomes, with reasons (implies --coverage).",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the verdicts as JSON and nothing else.")
 def test(
     paths: tuple[Path, ...],

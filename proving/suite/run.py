@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+from executive.record import RunResult
 from proving.engine import Case, Ending, Limits, run_cases, settle
 from proving.judge.verdict import Terms, Verdict, judged, repeat_command
 from proving.suite.collect import Collected
@@ -19,14 +19,14 @@ class Tested:
     collected: Collected
     verdict: Verdict
     ending: Ending
-    result: Mapping[str, Any]
+    result: RunResult
     repeat: str
 
     @property
     def folder(self) -> Path:
         return self.ending.case.folder
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """One row of `longarm test --json`."""
         return {
             "file": str(self.collected.file),
@@ -35,7 +35,7 @@ class Tested:
             "verdict": str(self.verdict.word),
             "message": self.verdict.message,
             "class": str(self.ending.kind),
-            "outcome": self.result["outcome"],
+            "outcome": self.result.outcome,
             "wall_s": round(self.ending.wall_s, 3),
             "repeat": self.repeat,
             "folder": str(self.folder),

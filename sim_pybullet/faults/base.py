@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import LongarmError
 from executive.core.ports import Backend
-from executive.run.fault import Fault, FaultSpec
+from executive.run import Fault, FaultSpec
 
 if TYPE_CHECKING:
     from sim_pybullet.world_faults import Tally, WorldFaults

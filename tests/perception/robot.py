@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from executive.core.clock import Clock
+from executive.core.devices import CABIN, CAMERAS, HEAD, INCLINOMETER
 from executive.core.ports import Devices
 from executive.core.types import (
     CabinReading,
@@ -76,13 +77,7 @@ class Robot:
     @property
     def devices(self) -> Devices:
         return Devices(
-            tracks=None,
-            cabin=self,
-            head=_Head(self),
-            cameras=self,
-            inclinometer=_Tilt(self),
-            tether=None,
-            link=None,
+            CABIN.fit(self), HEAD.fit(_Head(self)), CAMERAS.fit(self), INCLINOMETER.fit(_Tilt(self))
         )
 
     def read(self):

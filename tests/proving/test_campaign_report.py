@@ -208,7 +208,8 @@ def test_what_differs_from_case_to_case_is_shown_with_its_success(full):
 
 def test_alarms_are_counted_over_the_time_before_any_fault(told):
     told.case(0, false_alarms=[{"t_s": 50.0, "hypothesis": "poor_view"}], mission_s=3000.0)
-    early, late = {"name": "fresh_look", "t_s": 60.0}, {"name": "back_off", "t_s": ON_S + 10}
+    tried = {"hypothesis": "poor_view", "weight": 0.8}
+    early, late = {"name": "fresh_look", "t_s": 60.0} | tried, {"name": "back_off", "t_s": ON_S + 10} | tried
     told.case(1, (LED,), strategies=[early, late])
     found = alarms(gather(told.folder))
     assert found.hours == (3000.0 + ON_S) / 3600

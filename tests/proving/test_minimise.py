@@ -8,6 +8,8 @@ import pytest
 import yaml
 
 from executive.core.errors import ConfigError
+from executive.record import RunResult
+from executive.record.rows import JudgedRow
 from executive.run.app import RunOptions, run
 from executive.run.resolve import resolve_scenario
 from proving.engine import Case, CaseClass, Ending
@@ -23,6 +25,8 @@ from dataclasses import dataclass
 
 from pydantic import BaseModel
 
+from executive.record import RunResult
+from executive.record.rows import JudgedRow
 from executive.run.fault import Fault, FaultSpec
 from executive.core.types import Outcome, Reason
 
@@ -151,7 +155,7 @@ def test_a_case_of_five_faults_shrinks_to_the_two_that_make_it_fail(five, tmp_pa
     file.write_text(made.text(five))
     again = run(file, RunOptions(out=tmp_path / "run", bar=False, report=False))
     assert again.exit_code == 1
-    assert [row["met"] for row in again.result["expectations"]] == [False]
+    assert [row.met for row in again.result.expectations] == [False]
     assert len(file.read_text().splitlines()) < 20
 
 
@@ -181,7 +185,7 @@ def test_a_run_folder_is_minimised_from_its_own_scenario(suite, tmp_path, capsys
 def test_a_case_that_does_not_fail_is_left_alone(suite, tmp_path, capsys):
     output = tmp_path / "minimal.yaml"
     assert command_line.main([str(suite / "plain.yaml"), "-o", str(output)], standalone_mode=False) == 1
-    assert "expected one that does" in capsys.readouterr().err
+    assert "does not fail" in capsys.readouterr().err
     assert not output.exists()
 
 
@@ -192,12 +196,12 @@ def test_what_is_no_scenario_is_refused(tmp_path):
 
 def ended(suite, kind=CaseClass.OK, cause="", **result):
     case = Case("c", suite, suite)
-    kept = {"outcome": "reached", "reason": None, "expectations": []} | result
+    kept = RunResult(**{"outcome": "reached"} | result)
     return failure_of(Ending(case, kind, cause), kept, resolve_scenario(suite / "plain.yaml"))
 
 
 def row(text, met, when_s=None):
-    return {"text": text, "met": met, "t_violation_s": when_s}
+    return JudgedRow(text, met, t_violation_s=when_s)
 
 
 def test_what_was_violated_first_is_the_failure(suite):

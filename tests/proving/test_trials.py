@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from executive.record import RunResult
 from executive.tree.load import load_tree
 from proving.coverage.trials import conduct
 from proving.engine import Case, CaseClass, Ending, run_cases, settle
@@ -23,7 +24,7 @@ def test_a_tree_file_can_be_taken_to_say_something_else(suite, tmp_path):
     ]
     ends = {ending.case.key: ending for ending in run_cases(cases, 2)}
     assert ends["wrong"].kind is CaseClass.REFUSED
-    assert settle(ends["right"])["outcome"] == "help"
+    assert settle(ends["right"]).outcome == "help"
 
 
 def test_trials_take_turns_and_decide_what_comes_next():
@@ -43,7 +44,7 @@ def test_trials_take_turns_and_decide_what_comes_next():
 
 
 def told(word="passed", met=("a", "b"), missed=()):
-    return Account(Verdict(Word(word), "why"), frozenset(met), missed, {})
+    return Account(Verdict(Word(word), "why"), frozenset(met), missed, RunResult())
 
 
 @pytest.mark.parametrize(

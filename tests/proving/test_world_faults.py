@@ -7,6 +7,7 @@ import pytest
 
 from executive.config.backends import BackendRequest
 from executive.core import registry
+from executive.core.devices import DRIVE
 from executive.core.errors import LongarmError
 from executive.core.ports import LocaliseRequest
 from executive.core.rig import RigCalibration
@@ -100,7 +101,7 @@ def test_a_slip_burst_takes_its_share_of_the_travel(backend_of):
     for active in (False, True, False):
         fault.apply(backend, active)
         before = backend.world.body.pose()[0].copy()
-        finish(backend, backend.devices.tracks.drive(0.1, 0.1, 0.0014))
+        finish(backend, backend.devices[DRIVE].drive(0.1, 0.1, 0.0014))
         driven.append(travel(before, backend.world.body.pose()[0]))
     assert driven[1] / driven[0] == pytest.approx(0.6, abs=0.03)
     assert driven[2] / driven[0] == pytest.approx(1.0, abs=0.03)
@@ -110,10 +111,10 @@ def test_a_weak_track_lags_and_its_encoder_says_so(backend_of):
     backend, fault = backend_of(), make("track_weak", side="left", factor="50 %")
     fault.apply(backend, True)
     before = heading(backend.world.body.pose()[1])
-    backend.devices.tracks.drive(0.1, 0.1, 0.0014)
+    backend.devices[DRIVE].drive(0.1, 0.1, 0.0014)
     for _ in range(60):
         backend.advance()
-    reading = backend.devices.tracks.read()
+    reading = backend.devices[DRIVE].read()
     assert reading.left_m / reading.right_m == pytest.approx(0.5, abs=0.02)
     assert heading(backend.world.body.pose()[1]) - before > math.radians(5.0)
 
@@ -123,7 +124,7 @@ def test_a_rock_on_the_path_stops_the_rover(backend_of):
     fault.apply(backend, True)
     (rock,) = backend.world.rocks[-1:]
     assert rock.centre_site_m[:2] == pytest.approx((3.3, 0.0), abs=0.01)
-    finish(backend, backend.devices.tracks.drive(0.3, 0.3, 0.0014))
+    finish(backend, backend.devices[DRIVE].drive(0.3, 0.3, 0.0014))
     position, _ = backend.world.body.pose()
     assert position[0] < 3.2
 

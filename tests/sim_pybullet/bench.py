@@ -9,6 +9,7 @@ import numpy as np
 
 from executive.config.backends import BackendRequest
 from executive.core import registry
+from executive.core.devices import CAMERAS, DRIVE, HEAD
 from executive.core.rig import RigCalibration
 from executive.core.types import (
     Array,
@@ -77,22 +78,22 @@ class Bench:
         return heading(self.world.body.pose()[1])
 
     def drive(self, left_m: float, right_m: float, limit: int = 400) -> Outcome[Any] | None:
-        return self.finish(self.devices.tracks.drive(left_m, right_m, SPEED_M_S), limit)
+        return self.finish(self.devices[DRIVE].drive(left_m, right_m, SPEED_M_S), limit)
 
     def point(self, pan_rad: float = 0.0, tilt_rad: float = 0.0) -> Outcome[Any] | None:
         """Point the head this far beside where the rover was at first."""
         pan, tilt = self.gaze
-        return self.finish(self.devices.head.point(pan + pan_rad, tilt + tilt_rad))
+        return self.finish(self.devices[HEAD].point(pan + pan_rad, tilt + tilt_rad))
 
     def shot(self, pairs: int = PAIRS) -> Any:
         """The markers one by one, in windows round where an encoder would have the rover."""
-        head = self.devices.head.read()
+        head = self.devices[HEAD].read()
         middle = self.world.scene().T_site_plc[:3, 3]
         windows = []
         for view in head_views(self.backend.rig, head.pan_rad, head.tilt_rad):
             u, v = (round(float(x)) - HALF_WINDOW_PX for x in view.project(middle)[0])
             windows.append(Window(u, v, 2 * HALF_WINDOW_PX, 2 * HALF_WINDOW_PX))
-        outcome = self.finish(self.devices.cameras.take(Shot(led_sequence(4, pairs), tuple(windows), 0.5)))
+        outcome = self.finish(self.devices[CAMERAS].take(Shot(led_sequence(4, pairs), tuple(windows), 0.5)))
         assert outcome is not None
         assert outcome.ok
         return outcome.value

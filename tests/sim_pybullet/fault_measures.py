@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from executive.core.devices import CABIN, DRIVE, HEAD, TETHER
 from executive.core.types import Centres, Reason
 from tests.sim_pybullet.bench import Bench
 
@@ -38,17 +39,17 @@ def turn_of_a_turn(bench: Bench) -> float:
 
 def counts_of_a_drive(bench: Bench) -> float:
     """What the left encoder has counted 20 s into a drive [m]."""
-    before = bench.devices.tracks.read().left_m
+    before = bench.devices[DRIVE].read().left_m
     bench.drive(0.05, 0.05, 20)
-    return bench.devices.tracks.read().left_m - before
+    return bench.devices[DRIVE].read().left_m - before
 
 
 def run_on(bench: Bench) -> float:
     """What the left encoder counts in the 30 s after a drive [m]."""
     bench.drive(0.02, 0.02)
-    before = bench.devices.tracks.read().left_m
+    before = bench.devices[DRIVE].read().left_m
     bench.advance(30)
-    return bench.devices.tracks.read().left_m - before
+    return bench.devices[DRIVE].read().left_m - before
 
 
 def blocked(bench: Bench) -> float:
@@ -59,17 +60,17 @@ def blocked(bench: Bench) -> float:
 
 def arm_swing(bench: Bench) -> float:
     """How far the arm comes of 15 degrees [rad]."""
-    bench.finish(bench.devices.cabin.move(15 * DEG, 0.0))
-    swung = bench.devices.cabin.read().arm_rad
-    bench.finish(bench.devices.cabin.move(0.0, 0.0))
+    bench.finish(bench.devices[CABIN].move(15 * DEG, 0.0))
+    swung = bench.devices[CABIN].read().arm_rad
+    bench.finish(bench.devices[CABIN].move(0.0, 0.0))
     return swung
 
 
 def cabin_swing(bench: Bench) -> float:
     """How far the cabin comes of 15 degrees [rad]."""
-    bench.finish(bench.devices.cabin.move(0.0, 15 * DEG))
-    swung = bench.devices.cabin.read().cabin_rad
-    bench.finish(bench.devices.cabin.move(0.0, 0.0))
+    bench.finish(bench.devices[CABIN].move(0.0, 15 * DEG))
+    swung = bench.devices[CABIN].read().cabin_rad
+    bench.finish(bench.devices[CABIN].move(0.0, 0.0))
     return swung
 
 
@@ -82,7 +83,7 @@ def pull_of_a_drive(bench: Bench) -> float:
 def tether_out(bench: Bench) -> float:
     """Tether out beyond what the way takes, after 20 mm [m]."""
     bench.drive(0.02, 0.02)
-    return bench.devices.tether.read().length_m - bench.world.tether.way_m(bench.world.anchor())
+    return bench.devices[TETHER].read().length_m - bench.world.tether.way_m(bench.world.anchor())
 
 
 def load_on_tracks(bench: Bench) -> float:
@@ -101,17 +102,17 @@ def height_of_a_drive(bench: Bench) -> float:
 
 def pan_of_a_move(bench: Bench) -> float:
     """How far the pan encoder comes of 10 degrees, and the tilt encoder of 5 [rad]; pointed back after."""
-    before = bench.devices.head.read()
+    before = bench.devices[HEAD].read()
     bench.point(10 * DEG, 5 * DEG)
-    after = bench.devices.head.read()
+    after = bench.devices[HEAD].read()
     bench.point()
     return after.pan_rad - before.pan_rad
 
 
 def tilt_of_a_move(bench: Bench) -> float:
-    before = bench.devices.head.read()
+    before = bench.devices[HEAD].read()
     bench.point(10 * DEG, 5 * DEG)
-    after = bench.devices.head.read()
+    after = bench.devices[HEAD].read()
     bench.point()
     return after.tilt_rad - before.tilt_rad
 

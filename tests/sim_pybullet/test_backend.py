@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from executive.config.backends import BackendRequest
+from executive.core.devices import CABIN, CAMERAS, DRIVE, HEAD
 from executive.core.ports import Backend
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -34,7 +35,7 @@ def request(tier: str, truth: Path | None = None, **world: object) -> BackendReq
 @pytest.mark.parametrize(("tier", "kind"), [("full", Images), ("geometric", Centres)])
 def test_shot_is_delivered_after_its_time(tier: str, kind: type) -> None:
     backend: Backend = BACKEND.create(request(tier))
-    action = backend.devices.cameras.take(SHOT)
+    action = backend.devices[CAMERAS].take(SHOT)
     ticks = 0
     while action.poll() is None:
         backend.advance()
@@ -50,13 +51,13 @@ def test_shot_is_delivered_after_its_time(tier: str, kind: type) -> None:
 def test_safe_stop_stops_everything_and_may_be_called_twice() -> None:
     backend = BACKEND.create(request("geometric"))
     d = backend.devices
-    actions = [d.tracks.drive(0.1, 0.1, 0.0014), d.cabin.move(0.3, 0.1), d.head.point(0.5, 0.1)]
+    actions = [d[DRIVE].drive(0.1, 0.1, 0.0014), d[CABIN].move(0.3, 0.1), d[HEAD].point(0.5, 0.1)]
     backend.advance()
     backend.safe_stop()
     backend.safe_stop()
     backend.advance()
     assert all(a.poll() is not None for a in actions)
-    assert not any(device.read().moving for device in (d.tracks, d.cabin, d.head))
+    assert not any(device.read().moving for device in (d[DRIVE], d[CABIN], d[HEAD]))
     backend.close()
     backend.close()
 
@@ -64,7 +65,7 @@ def test_safe_stop_stops_everything_and_may_be_called_twice() -> None:
 def test_truth_file_holds_the_path(tmp_path: Path) -> None:
     path = tmp_path / "truth.mcap"
     backend = BACKEND.create(request("geometric", path))
-    backend.devices.tracks.drive(0.014, 0.014, 0.0014)
+    backend.devices[DRIVE].drive(0.014, 0.014, 0.0014)
     for _ in range(12):
         backend.advance()
     backend.close()

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import sim_pybullet.faults as catalogue
+from executive.core.devices import DRIVE, TETHER
 from executive.core.types import Reason
 from executive.run.fault import FaultSpec
 from tests.sim_pybullet import fault_measures as measure
@@ -192,11 +193,11 @@ def test_a_moving_rock_rolls_into_the_way(tier: str, bench_of: Callable[..., Ben
 def test_a_runaway_stops_with_the_next_drive(bench_of: Callable[..., Bench]) -> None:
     bench = bench_of("motor_runaway", side="right", lasts="60 s")
     bench.set_level(1.0)
-    bench.devices.tracks.drive(0.05, 0.05, SPEED_M_S)
+    bench.devices[DRIVE].drive(0.05, 0.05, SPEED_M_S)
     bench.advance(5)
-    bench.devices.tracks.stop()
+    bench.devices[DRIVE].stop()
     bench.advance(5)
-    reading = bench.devices.tracks.read()
+    reading = bench.devices[DRIVE].read()
     assert reading.moving
     assert reading.right_m - reading.left_m == pytest.approx(5 * SPEED_M_S, rel=0.05)
 
@@ -204,9 +205,9 @@ def test_a_runaway_stops_with_the_next_drive(bench_of: Callable[..., Bench]) -> 
 def test_a_jammed_track_draws_more_than_the_other(bench_of: Callable[..., Bench]) -> None:
     bench = bench_of("track_jam", side="left")
     bench.set_level(1.0)
-    bench.devices.tracks.drive(0.05, 0.05, SPEED_M_S)
+    bench.devices[DRIVE].drive(0.05, 0.05, SPEED_M_S)
     bench.advance(4)
-    reading = bench.devices.tracks.read()
+    reading = bench.devices[DRIVE].read()
     assert reading.left_current_a > reading.right_current_a + 0.03
 
 
@@ -218,7 +219,7 @@ def test_a_snag_is_felt_in_part_at_the_spool_and_a_drag_round_a_rock_not_at_all(
         bench.set_level(1.0)
         bench.drive(0.08, 0.08)
         pull = bench.world.tether.tension_n
-        assert bench.devices.tether.read().tension_n / pull == pytest.approx(felt, abs=0.05)
+        assert bench.devices[TETHER].read().tension_n / pull == pytest.approx(felt, abs=0.05)
 
 
 def test_a_locked_head_ends_its_move_with_a_defect(bench_of: Callable[..., Bench]) -> None:

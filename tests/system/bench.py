@@ -13,6 +13,7 @@ from typing import Any
 from executive.config.backends import BackendRequest
 from executive.config.source import read_text
 from executive.core.clock import Stopwatch
+from executive.core.devices import DRIVE
 from executive.core.ports import LocaliseRequest
 from executive.core.types import Outcome, Quality, Reason
 from executive.isc import Classification, known_channels, known_hypotheses
@@ -22,6 +23,7 @@ from executive.pool import (
     Situation,
     Strategy,
 )
+from executive.record.bus import EventBus
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.run.assembly import prior_pose
@@ -204,7 +206,7 @@ def prepare(setting: Setting, folder: Path, diary: Diary) -> tuple[Run, BuiltTre
         BackendRequest(scenario.world, route, scenario.seed, scenario.tier, scenario.rig, None, 1.0)
     )
     recorder = Recorder(folder / "record.mcap")
-    journal = RunJournal(recorder, backend.clock, route)
+    journal = RunJournal(EventBus(backend.clock, [recorder.write]), route)
     localizer = Blinking(backend.devices, backend.rig, backend.clock)
     localizer.every = setting.blind_every
     pool = InTurn(strategies(), journal.strategy)
@@ -257,7 +259,7 @@ def run(
     stop = backend.safe_stop
 
     def noted_stop() -> None:
-        moving_at_stop.append(backend.devices.tracks.read().moving)
+        moving_at_stop.append(backend.devices[DRIVE].read().moving)
         stop()
 
     backend.safe_stop = noted_stop

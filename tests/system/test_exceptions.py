@@ -12,6 +12,7 @@ import pytest
 
 from executive.cli import invoke
 from executive.core import registry
+from executive.core.devices import DRIVE
 from executive.core.errors import NodeRaised
 from executive.pool import Pool
 from executive.record import History, events
@@ -68,7 +69,7 @@ def safe(ended: Ended) -> dict[str, bool]:
     return {
         "every leaf is halted once per entry": ended.diary.halted == ended.diary.begun,
         "no leaf is left entered": not ended.built.trace.entered,
-        "the rover rests": not ended.backend.devices.tracks.read().moving,
+        "the rover rests": not ended.backend.devices[DRIVE].read().moving,
         "the record is closed": is_complete(ended.record),
         "the record ends with a stop": stop is not None and stop.event.outcome == ended.end.outcome,
     }
@@ -127,11 +128,11 @@ def test_a_device_that_raises_leaves_the_rover_safe(
     tmp_path: Path, port: str, method: str, after: int
 ) -> None:
     def alter(made: Run) -> None:
-        break_in(getattr(made.backend.devices, port), method, after)
+        break_in(made.backend.devices.named(port), method, after)
 
     ended = run(Setting(), tmp_path, alter=alter)
     # the fake's own reading at the end would raise too: ask the robot itself
-    ended.backend.devices.tracks.__dict__.pop("read", None)
+    ended.backend.devices[DRIVE].__dict__.pop("read", None)
     assert (ended.end.outcome, ended.end.defect is None) == ("error", False)
     assert f"{method} is broken" in (ended.end.reason or "")
     assert [promise for promise, kept in safe(ended).items() if not kept] == []
@@ -212,7 +213,7 @@ def test_an_interrupt_while_coming_to_rest_does_not_keep_it_from_resting(tmp_pat
         advance = made.backend.advance
 
         def interrupted() -> None:
-            if made.backend.devices.tracks.read().moving:
+            if made.backend.devices[DRIVE].read().moving:
                 raise KeyboardInterrupt
             advance()
 
@@ -221,7 +222,7 @@ def test_an_interrupt_while_coming_to_rest_does_not_keep_it_from_resting(tmp_pat
 
     ended = run(Setting(), tmp_path, alter=alter)
     assert not ended.rested_by_itself  # nobody halted the leaves; the backend stopped it
-    assert not ended.backend.devices.tracks.read().moving
+    assert not ended.backend.devices[DRIVE].read().moving
     assert is_complete(ended.record)
 
 

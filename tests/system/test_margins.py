@@ -23,7 +23,7 @@ def test_a_rock_on_the_path_is_passed_or_the_rover_holds_within_the_margin(seed,
         seed, tmp_path / "run", "geometric", (f"world.obstacles=[{rock}]", "time_limit=6 h"), bar=False
     )
     result = run(MISSION, options).result
-    assert result["outcome"] in ("reached", "help", "safe_hold")
-    assert result["truth"]["driven_beyond_off_track_m"] == 0.0
-    assert result["truth"]["max_tilt_deg"] < 25.0
-    assert "back_off" in {row["name"] for row in result["strategies"]}
+    assert result.outcome in ("reached", "help", "safe_hold")
+    assert result.truth.driven_beyond_off_track_m == 0.0
+    assert result.truth.max_tilt_deg < 25.0
+    assert "back_off" in {row.name for row in result.strategies}

@@ -19,8 +19,8 @@ pytestmark = [
 @pytest.mark.parametrize("tier", ["geometric", "full"])
 def test_the_mars_yard_is_crossed_on_vision(tmp_path, tier):
     done = run(SCENARIO, RunOptions(out=tmp_path / "run", tier=tier, bar=False))
-    truth = done.result["truth"]
-    assert done.result["outcome"] == "reached"
-    assert max(truth["waypoint_errors_m"]) <= 0.030
-    assert truth["driven_beyond_off_track_m"] == 0.0
-    assert all(row["met"] for row in done.result["expectations"])
+    truth = done.result.truth
+    assert done.result.outcome == "reached"
+    assert max(truth.waypoint_errors_m) <= 0.030
+    assert truth.driven_beyond_off_track_m == 0.0
+    assert all(row.met for row in done.result.expectations)

@@ -22,6 +22,7 @@ from executive.core.registry.sources import (
     broken_kinds,
     entries,
     in_order,
+    kind_named,
     kind_names,
     kinds,
     modules,
@@ -41,6 +42,7 @@ __all__ = [
     "every",
     "get",
     "in_project",
+    "kind_named",
     "kind_names",
     "kinds",
     "modules",
@@ -79,12 +81,13 @@ def ordered(kind: Kind[T]) -> tuple[T, ...]:
 def broken(kind: Kind[Any]) -> tuple[Broken, ...]:
     """All of a kind that cannot be used, and the modules that may have held more of it."""
     loaded = [entry.loaded(kind) for entry in entries(kind.plural).values()]
-    return (*(found for _, found in loaded if found is not None), *broken_modules())
+    return (*(found for _, found in loaded if found is not None), *broken_modules(kind))
 
 
-def broken_modules() -> tuple[Broken, ...]:
-    """The plug-in modules that cannot be imported: nobody knows what they would have added."""
-    return tuple(module.broken for module in modules() if module.broken is not None)
+def broken_modules(kind: Kind[Any] | None = None) -> tuple[Broken, ...]:
+    """The plug-in modules that cannot be imported, which might have added this kind, or any."""
+    found = modules(kind.plural if kind is not None else None)
+    return tuple(module.broken for module in found if module.broken is not None)
 
 
 def source_of(kind: Kind[Any], name: str) -> str:

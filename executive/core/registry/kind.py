@@ -56,7 +56,7 @@ class Kind(Generic[T]):
     def faults_of(self, name: str, entry: Any) -> tuple[str, ...]:
         """All that is wrong with an entry registered by this name."""
         if not self.fits(entry):
-            wanted = f"a subclass of {self.type.__name__}" if self.classes else f"a {self.type.__name__}"
+            wanted = f"a subclass of {self.type.__name__}" if self.classes else _one(self.type)
             return (f"got {_shown(entry)}, expected {wanted}",)
         own = self.name_of(entry)
         other = () if own in (None, name) else (f"its own name is {own!r}",)
@@ -69,4 +69,8 @@ def group_of(plural: str) -> str:
 
 
 def _shown(entry: object) -> str:
-    return f"the class {entry.__name__}" if isinstance(entry, type) else f"a {type(entry).__name__}"
+    return f"the class {entry.__name__}" if isinstance(entry, type) else _one(type(entry))
+
+
+def _one(of: type[Any]) -> str:
+    return f"{'an' if of.__name__[0].lower() in 'aeiou' else 'a'} {of.__name__}"

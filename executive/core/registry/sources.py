@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
 from importlib import import_module
@@ -20,6 +20,9 @@ from executive.core.registry.project import Project, current_project
 KINDS = group_of("kinds")
 MODULES = group_of("plugins")
 """Entry points of this group name modules, which are scanned as a project's files are."""
+OF_KINDS: Kind[Kind[Any]] = Kind(
+    "kind", "kinds", "What can be added.", Kind, name_of=lambda kind: kind.plural
+)
 T = TypeVar("T")
 Entries = dict[str, Entry]
 
@@ -41,15 +44,21 @@ def entries(plural: str) -> Entries:
 def in_order(plural: str) -> Entries:
     """The same in order of registration: entry points by name, then modules as they define it."""
     found = dict(_installed(_path()).get(group_of(plural), {}))
-    for module in modules():
+    for module in modules(plural):
         for name, entry in module.adds.get(plural, {}).items():
             found[name] = _twice(found[name], entry) if name in found else entry
     return found
 
 
-def modules() -> tuple[Module, ...]:
-    """The plug-in modules of packages and of the project under way, scanned."""
-    return _scanned(_path(), current_project())
+def modules(plural: str | None = None) -> tuple[Module, ...]:
+    """The plug-in modules of packages and of the project under way, scanned: all, or those for one kind.
+
+    The last word of an entry point's name may be the plural of a kind (`mine.channels`): then the module is
+    imported and scanned for that kind alone.
+    """
+    points = _installed(_path()).get(MODULES, {})
+    wanted = [name for name in points if plural is None or _only(name) in (None, plural)]
+    return (*(_of_package(_path(), name) for name in wanted), *_of_project(_path(), current_project()))
 
 
 def kinds() -> tuple[Kind[Any], ...]:
@@ -60,6 +69,11 @@ def kinds() -> tuple[Kind[Any], ...]:
 def broken_kinds() -> tuple[Broken, ...]:
     """The kinds that cannot be loaded."""
     return _kinds(_path())[1]
+
+
+def kind_named(plural: str) -> Kind[Any]:
+    """One kind, and no other loaded. KeyError: no such kind; PluginError: it is broken."""
+    return cast("Kind[Any]", _installed(_path())[KINDS][plural].use(OF_KINDS))
 
 
 def kind_names() -> tuple[str, ...]:
@@ -111,36 +125,38 @@ def _twice(first: Entry, second: Entry) -> Entry:
 
 @cache
 def _kinds(path: tuple[str, ...]) -> tuple[tuple[Kind[Any], ...], tuple[Broken, ...]]:
-    of_kinds: Kind[Kind[Any]] = Kind(
-        "kind", "kinds", "What can be added.", Kind, name_of=lambda kind: kind.plural
-    )
-    tried = [entry.loaded(of_kinds) for entry in _installed(path).get(KINDS, {}).values()]
+    tried = [entry.loaded(OF_KINDS) for entry in _installed(path).get(KINDS, {}).values()]
     loaded = tuple(cast("Kind[Any]", thing) for thing, broken in tried if broken is None)
     return loaded, tuple(broken for _, broken in tried if broken is not None)
 
 
+def _only(point: str) -> str | None:
+    """The one kind that a module is scanned for; None for every kind."""
+    last = point.rpartition(".")[2]
+    return last if last in kind_names() else None
+
+
 @cache
-def _scanned(path: tuple[str, ...], project: Project | None) -> tuple[Module, ...]:
-    return tuple(_scan(source, load) for source, load in _modules(path, project))
+def _of_package(path: tuple[str, ...], name: str) -> Module:
+    entry, only = _installed(path)[MODULES][name], _only(name)
+    return _scan(entry.source, cast("Callable[[], ModuleType]", entry.load), only)
 
 
-def _modules(
-    path: tuple[str, ...], project: Project | None
-) -> Iterator[tuple[str, Callable[[], ModuleType]]]:
-    for entry in _installed(path).get(MODULES, {}).values():
-        yield entry.source, cast("Callable[[], ModuleType]", entry.load)
-    if project is not None:
-        yield from ((project.title(plugin), partial(load_file, plugin)) for plugin in project.plugins)
+@cache
+def _of_project(path: tuple[str, ...], project: Project | None) -> tuple[Module, ...]:
+    if project is None:
+        return ()
+    return tuple(_scan(project.title(plugin), partial(load_file, plugin)) for plugin in project.plugins)
 
 
 def _same(thing: T) -> T:
     return thing
 
 
-def _scan(source: str, load: Callable[[], ModuleType]) -> Module:
+def _scan(source: str, load: Callable[[], ModuleType], only: str | None = None) -> Module:
     try:
         module = load()
-        found = list(defined_in(module, kinds()))
+        found = list(defined_in(module, kinds() if only is None else (kind_named(only),)))
     except Exception as error:  # a plug-in's import may raise anything
         return Module(source, {}, Broken("plug-in", "", source, why(error)))
     adds: dict[str, Entries] = {}

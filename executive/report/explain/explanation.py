@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -23,6 +23,7 @@ from executive.record.events import (
 )
 from executive.record.history import At
 from executive.record.result import strategy_rows
+from executive.record.run_result import FaultStages, StrategyRow
 from executive.report.explain.chain import Chain, Link, Moment
 
 T = TypeVar("T")
@@ -46,13 +47,13 @@ class Explanation:
     hypotheses: Mapping[str, float]
     weighed_s: float | None
     time_to_margin_s: float | None
-    strategies: tuple[Mapping[str, object], ...]
+    strategies: tuple[StrategyRow, ...]
     refusals: tuple[At[str], ...]
     calls: tuple[At[Call], ...]
     commands: tuple[At[Command], ...]
-    faults: tuple[Mapping[str, object], ...]
+    faults: tuple[FaultStages, ...]
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """Plain data for `--json`."""
         return {
             **{key: getattr(self, key) for key in ("scenario", "seed", "outcome", "reason", "at_s", "end_s")},
@@ -62,7 +63,7 @@ class Explanation:
             "hypotheses": dict(self.hypotheses),
             "weighed_s": self.weighed_s,
             "time_to_margin_s": self.time_to_margin_s,
-            "strategies": [dict(row) for row in self.strategies],
+            "strategies": [asdict(row) for row in self.strategies],
             "refusals": [{"t_s": at.time_s, "why": at.event} for at in self.refusals],
             "calls": [
                 {"t_s": at.time_s, "reason": at.event.reason.value, "detail": at.event.detail}
@@ -73,7 +74,7 @@ class Explanation:
                 for at in self.commands
                 for c in (at.event,)
             ],
-            "faults": [dict(row) for row in self.faults],
+            "faults": [_fault(fault) for fault in self.faults],
         }
 
 
@@ -108,7 +109,7 @@ def explain(folder: Path, at: str | None = None) -> Explanation:
         hypotheses=_ranked(weighed[-1].event.weights) if weighed else {},
         weighed_s=weighed[-1].time_s if weighed else None,
         time_to_margin_s=weighed[-1].event.time_to_margin_s if weighed else None,
-        strategies=tuple(strategy_rows(History.holding(strategies))),
+        strategies=strategy_rows(History.holding(strategies)),
         refusals=tuple(refused),
         calls=tuple(_until(history, Call, at_s)),
         commands=tuple(_until(history, Command, at_s)[-_MOST_COMMANDS:]),
@@ -143,21 +144,20 @@ def _ranked(weights: Mapping[str, float]) -> dict[str, float]:
     return dict(sorted(weights.items(), key=lambda pair: -pair[1]))
 
 
-def _faults(events: list[At[FaultEvent]]) -> list[dict[str, object]]:
-    """One row per fault that took effect: since when, until when, what it should be taken for."""
-    rows: dict[str, dict[str, object]] = {}
+def _faults(events: list[At[FaultEvent]]) -> list[FaultStages]:
+    """Every fault that took effect: since when, until when, what it should be taken for."""
+    found: dict[str, FaultStages] = {}
     for time_s, event in sorted(events, key=lambda at: at.time_s):
         if event.active:
-            row = {
-                "name": event.name,
-                "t_on_s": time_s,
-                "t_off_s": None,
-                "expected": event.hypothesis or None,
-            }
-            rows.setdefault(event.name, row)
-        elif event.name in rows:
-            rows[event.name]["t_off_s"] = time_s
-    return list(rows.values())
+            stages = FaultStages(event.name, fired=True, t_on_s=time_s, expected=event.hypothesis or None)
+            found.setdefault(event.name, stages)
+        elif event.name in found:
+            found[event.name] = replace(found[event.name], t_off_s=time_s)
+    return list(found.values())
+
+
+def _fault(fault: FaultStages) -> dict[str, object]:
+    return {key: getattr(fault, key) for key in ("name", "t_on_s", "t_off_s", "expected")}
 
 
 def _link(link: Link) -> dict[str, object]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from executive.record.events import Command
+from executive.record.run_result import FaultStages
 from executive.report.explain.chain import Chain, Link
 from executive.report.explain.explanation import Explanation
 from executive.report.figure import duration
@@ -101,18 +102,10 @@ def _hypotheses(found: Explanation) -> Iterator[str]:
 def _strategies(found: Explanation) -> list[str]:
     words = {True: "helped", False: "did not help", None: "verdict still out"}
     return [
-        f"  {_t(_number(row['t_s']))}  {row['name']}, attempt {row['attempt']}, against {row['hypothesis']} "
-        f"at {_number(row['weight']):.2f}: {row['why']}; {words[_verdict(row['helped'])]}"
+        f"  {_t(row.t_s)}  {row.name}, attempt {row.attempt}, against {row.hypothesis} "
+        f"at {row.weight:.2f}: {row.why}; {words[row.helped]}"
         for row in found.strategies
     ]
-
-
-def _number(value: object) -> float:
-    return float(value) if isinstance(value, int | float) else math.nan
-
-
-def _verdict(value: object) -> bool | None:
-    return value if isinstance(value, bool) else None
 
 
 def _command(command: Command) -> str:
@@ -129,7 +122,7 @@ def _value(name: str, value: float) -> str:
     return f"{name} {value:.4g}"
 
 
-def _fault(row: Mapping[str, object]) -> str:
-    until = "still" if row["t_off_s"] is None else f"until {_t(_number(row['t_off_s'])).strip()}"
-    meant = f"; to be taken for {row['expected']}" if row["expected"] else ""
-    return f"  {_t(_number(row['t_on_s']))}  {row['name']}, {until}{meant}"
+def _fault(fault: FaultStages) -> str:
+    until = "still active" if fault.t_off_s is None else f"until {_t(fault.t_off_s).strip()}"
+    expected = f"; expected diagnosis {fault.expected}" if fault.expected else ""
+    return f"  {_t(fault.t_on_s or 0.0)}  {fault.name}: {until}{expected}"

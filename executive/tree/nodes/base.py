@@ -184,10 +184,14 @@ class Trace:
 
 
 class Leaf(Behaviour):
-    """A leaf of the tree. Subclasses declare ports and write `begin`, `step` and, if needed, `halt`."""
+    """A leaf of the tree. Subclasses declare ports and write `begin`, `step` and, if needed, `halt`.
+
+    `needs` are the names of the devices without which it cannot do its work.
+    """
 
     outcomes: ClassVar[tuple[Reason, ...]] = (Reason.DONE,)
     heeds_alarm: ClassVar[bool] = True
+    needs: ClassVar[tuple[str, ...]] = ()
 
     def __init__(
         self, name: str, path: str, services: Services, bindings: Mapping[str, Binding], trace: Trace

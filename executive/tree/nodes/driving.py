@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
+from executive.core.devices import DRIVE
 from executive.core.ports import Action
 from executive.core.types import (
     Outcome,
@@ -20,6 +21,7 @@ from executive.core.values import (
     POSE,
     SEGMENT,
 )
+from executive.isc import Sensed
 from executive.navigation import guidance
 from executive.navigation.belt_watch import BeltWatch
 from executive.navigation.guidance import Belts
@@ -42,6 +44,8 @@ class DrivingLeaf(ActionLeaf):
     Leaves the predicted pose behind.
     """
 
+    needs = ("drive",)
+
     pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))
     tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
@@ -58,7 +62,7 @@ class DrivingLeaf(ActionLeaf):
         planned = self.belts()
         if not planned.ok or planned.value is None:
             return planned
-        speed, tracks = self.services.rig.rover.speed_m_s, self.services.devices.tracks
+        speed, tracks = self.services.rig.rover.speed_m_s, self.services.devices[DRIVE]
         self._belts = BeltWatch(planned.value, speed, tracks.read())
         return tracks.drive(planned.value.left_m, planned.value.right_m, speed)
 
@@ -71,17 +75,23 @@ class DrivingLeaf(ActionLeaf):
     def _problem(self, pose: PoseEstimate) -> Outcome[object] | None:
         """Why this drive must not go on, None if it may."""
         sensed = self.services.classification.tracker.sensed
-        if sensed is not None:
-            if miscount := self._belts.problem(sensed.tracks):
-                return Outcome(Reason.DEVICE, miscount)
-            tilt_rad = math.hypot(sensed.tilt.roll_rad, sensed.tilt.pitch_rad)
-            if tilt_rad > self.tilt_limit:
-                return Outcome(Reason.TILT, f"{math.degrees(tilt_rad):.1f} deg")
-            if sensed.tether.tension_n > self.tension_limit:
-                return Outcome(Reason.TETHER, f"pulls with {sensed.tether.tension_n:.1f} N")
+        if sensed is not None and (problem := self._read_problem(sensed)):
+            return problem
         room_m = math.inf if self.segment is None else guidance.room_m(pose, self.segment, self.sigmas)
         if room_m <= 0.0:
             return Outcome(Reason.OFF_TRACK, f"may be {-room_m * 1e3:.0f} mm beyond the margin")
+        return None
+
+    def _read_problem(self, sensed: Sensed) -> Outcome[object] | None:
+        """What the readings say against going on, of the devices that this robot has."""
+        if miscount := self._belts.problem(sensed.tracks):
+            return Outcome(Reason.DEVICE, miscount)
+        if (tilt := sensed.tilt) is not None:
+            tilt_rad = math.hypot(tilt.roll_rad, tilt.pitch_rad)
+            if tilt_rad > self.tilt_limit:
+                return Outcome(Reason.TILT, f"{math.degrees(tilt_rad):.1f} deg")
+        if sensed.tether is not None and sensed.tether.tension_n > self.tension_limit:
+            return Outcome(Reason.TETHER, f"pulls with {sensed.tether.tension_n:.1f} N")
         return None
 
     def finish(self, outcome: Outcome[TrackReading]) -> Outcome[Any]:
@@ -92,7 +102,7 @@ class DrivingLeaf(ActionLeaf):
 
     def halt(self) -> None:
         super().halt()
-        self.services.devices.tracks.stop()
+        self.services.devices[DRIVE].stop()
 
     def _carry_on(self) -> PoseEstimate:
         self.pose = self.services.classification.predicted().on(self.segment)

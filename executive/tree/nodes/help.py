@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from executive.core.devices import DRIVE, LINK
 from executive.core.ports import Action
 from executive.core.types import Call, Outcome, Reason
 from executive.tree.nodes.action import ActionLeaf
@@ -13,11 +14,12 @@ class CallForHelp(ActionLeaf):
     Always fails, with the reason that led here: the mission did not reach its goal by itself.
     """
 
+    needs = ("drive", "link")
     outcomes = (Reason.NO_STRATEGY,)
     heeds_alarm = False  # whatever happens, ground is told
 
     def request(self) -> Action[str]:
-        self.services.devices.tracks.stop()
+        self.services.devices[DRIVE].stop()
         failed = self.trace.last_failure
         path, outcome = failed if failed else ("", Outcome[object](Reason.NO_STRATEGY))
         weights = self.services.classification.weights
@@ -25,7 +27,7 @@ class CallForHelp(ActionLeaf):
         call = Call(self.services.clock.now_s, outcome.reason, f"{path}: {outcome.detail}", evidence)
         self.services.journal.call(call)
         self._why = outcome
-        return self.services.devices.link.call(call)
+        return self.services.devices[LINK].call(call)
 
     def finish(self, outcome: Outcome[str]) -> Outcome[object]:
         return Outcome(Reason.NO_STRATEGY, f"{self._why.reason}: {self._why.detail}")

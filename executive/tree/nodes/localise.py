@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from executive.core.devices import DRIVE
 from executive.core.ports import Action, LocaliseRequest
 from executive.core.types import (
     Localisation,
@@ -34,6 +35,7 @@ class Localise(ActionLeaf):
     yaw = In[float](ANGLE, "standard deviation wanted; 0: that of the quality", default=0.0)
     settle = In[float](DURATION, "time at rest before the first exposure", default=5.0)
 
+    needs = ("drive",)
     outcomes = (
         Reason.DONE,
         Reason.NOT_SEEN,
@@ -47,7 +49,7 @@ class Localise(ActionLeaf):
     )
 
     def begin(self) -> None:
-        self.services.devices.tracks.stop()
+        self.services.devices[DRIVE].stop()
         clock = self.services.clock
         self._start_tick = clock.ticks + clock.ticks_for(self.settle)
 

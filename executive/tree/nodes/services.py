@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from executive.core.clock import Clock
 from executive.core.ports import Devices, Localizer
-from executive.core.rig import RigCalibration
+from executive.core.rig import Rig
 from executive.core.types import (
     Call,
     CameraView,
@@ -39,7 +39,7 @@ class Services:
 
     clock: Clock
     devices: Devices
-    rig: RigCalibration
+    rig: Rig
     localizer: Localizer
     classification: Classification
     pool: Pool

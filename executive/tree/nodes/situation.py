@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from executive.core.devices import DRIVE
 from executive.core.types import Outcome, Segment
 from executive.isc.readings import Readings
 from executive.pool.situation import Situation
@@ -18,7 +19,7 @@ def choose(
     services: Services, segment: Segment | None, failure: Outcome[object], at_hand: frozenset[str]
 ) -> str | None:
     """The strategy that the pool chooses among those at hand, None to call home. The rover rests."""
-    services.devices.tracks.stop()
+    services.devices[DRIVE].stop()
     pose = services.classification.predicted()
     situation = Situation(
         time_s=services.clock.now_s,
@@ -32,6 +33,10 @@ def choose(
 
 
 def _readings(services: Services) -> Readings:
-    """The latest of what is read continuously, and of the cabin."""
-    sensed = services.classification.tracker.readings.by_device
-    return Readings({**sensed, "cabin": services.devices.cabin.read()})
+    """The latest of what is read continuously, and what the other devices read now."""
+    now = {
+        fitted.spec.name: fitted.spec.read(fitted.device)
+        for fitted in services.devices
+        if fitted.spec.quantities and not fitted.spec.sensed
+    }
+    return Readings({**services.classification.tracker.readings.by_device, **now})

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.types import Array
-from executive.record.history import History
+from executive.record import History
 from executive.record.signals import signals
 from proving.judge.temporal.formula import Bounds
 from proving.judge.temporal.windows import Indices

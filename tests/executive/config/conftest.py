@@ -6,10 +6,14 @@ from textwrap import dedent
 import pytest
 
 MODULE = """
+from dataclasses import dataclass
 from pydantic import BaseModel, ConfigDict, Field
 from typing import Annotated
 from executive.config.backends import BackendSpec
 from executive.run.fault import Fault, FaultSpec
+from executive.core.device_spec import DeviceSpec, Quantity
+from executive.core.rig import RigCalibration
+from executive.core.values import NUMBER
 from executive.core.units import Angle, Length, Fraction
 
 class Light(BaseModel):
@@ -26,8 +30,35 @@ class LampOff(BaseModel):
     marker: Annotated[int, Field(ge=0, le=3)]
     depth: Fraction = 1.0
 
-BACKEND = BackendSpec("plain", "A backend for tests.", World, ("full", "geometric"), lambda request: None)
-POOR = BackendSpec("poor", "A backend without images.", World, ("geometric",), lambda request: None)
+DEVICES = ("tracks", "cabin", "head", "cameras", "inclinometer", "tether", "link")
+BACKEND = BackendSpec(
+    "plain", "For tests.", World, ("full", "geometric"), DEVICES, RigCalibration, lambda request: None
+)
+POOR = BackendSpec(
+    "poor", "A backend without images.", World, ("geometric",), DEVICES, RigCalibration, lambda request: None
+)
+
+@dataclass(frozen=True)
+class BareRover:
+    length_m: float = 0.5
+    width_m: float = 0.4
+    track_gauge_m: float = 0.3
+    speed_m_s: float = 0.1
+    tilt_limit_rad: float = 0.4
+    tether_limit_n: float | None = None
+
+@dataclass(frozen=True)
+class BareRig:
+    rover: BareRover = BareRover()
+
+BATTERY = DeviceSpec(
+    "battery", "The battery.", object,
+    (Quantity("charge", NUMBER, "what is left, 0 to 1", lambda r: r),),
+    read=lambda battery: battery.charge,
+)
+BARE = BackendSpec(
+    "bare", "On wheels.", World, ("full", "geometric"), ("drive", "battery"), BareRig, lambda request: None
+)
 LAMP_OFF = FaultSpec("lamp_off", "A lamp goes out.", LampOff, lambda lamp: Fault(), "marker_lost")
 DAYLIGHT = FaultSpec(
     "daylight", "Too bright.", LampOff, lambda lamp: Fault(), "poor_view", ("plain",), ("full",), lasting=True
@@ -38,7 +69,10 @@ POINTS = """
 [longarm.backends]
 plain = third_party_plugin:BACKEND
 poor = third_party_plugin:POOR
+bare = third_party_plugin:BARE
 broken = third_party_plugin:MISSING
+[longarm.devices]
+battery = third_party_plugin:BATTERY
 [longarm.faults]
 lamp_off = third_party_plugin:LAMP_OFF
 daylight = third_party_plugin:DAYLIGHT

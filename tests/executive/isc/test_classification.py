@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import pytest
 
 from executive.config.backends import BackendRequest
+from executive.core.devices import DRIVE, TETHER
 from executive.core.rig import RigCalibration
 from executive.core.types import (
     Outcome,
@@ -33,7 +34,7 @@ class Bench:
     mind: Classification
 
     def drive(self, left_m: float, right_m: float) -> None:
-        action = self.backend.devices.tracks.drive(left_m, right_m, 0.0014)
+        action = self.backend.devices[DRIVE].drive(left_m, right_m, 0.0014)
         while action.poll() is None:
             self.mind.tracker.sense(self.backend.devices)
             self.backend.advance()
@@ -41,7 +42,7 @@ class Bench:
 
     def pull(self, tension_n: float) -> None:
         """Let the tether be felt like this."""
-        tether = self.backend.devices.tether.read()
+        tether = self.backend.devices[TETHER].read()
         sensed = self.mind.tracker.sense(self.backend.devices)
         self.mind.tracker.sensed = replace(sensed, tether=replace(tether, tension_n=tension_n))
 

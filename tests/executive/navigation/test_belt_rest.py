@@ -4,9 +4,10 @@ import math
 from dataclasses import replace
 
 from executive.config.backends import BackendRequest
+from executive.core.devices import DRIVE
 from executive.core.rig import RigCalibration
 from executive.core.types import Point, Segment
-from executive.navigation.belt_rest import RestingTracks
+from executive.navigation.belt_rest import RestingDrive
 from executive.testing import FakeBackend, FakeWorld
 
 SPEED_M_S = 0.0014
@@ -21,10 +22,10 @@ class Bench:
             BackendRequest(FakeWorld(), route, 3, "geometric", RigCalibration(), None, 1.0)
         )
         self.stops = 0
-        inner = self.backend.devices.tracks
+        inner = self.backend.devices[DRIVE]
         stop = inner.stop
         inner.stop = lambda: (stop(), setattr(self, "stops", self.stops + 1))
-        self.tracks = RestingTracks(inner)
+        self.tracks = RestingDrive(inner)
         self.runaway_m = 0.0
 
     def told(self, ticks):

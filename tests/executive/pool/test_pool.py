@@ -133,3 +133,11 @@ def test_what_fails_again_only_further_on_was_helped() -> None:
     chosen.conclude(helped=False, along_m=0.6)
     assert chosen.memory.attempts[-1].helped
     assert chosen.choose(situation("slip_turning", x_m=0.6)).strategy == "turn"
+
+
+def test_what_this_robot_cannot_carry_out_is_refused_with_its_reason() -> None:
+    notes: list[Choice | Attempt] = []
+    lacking = "needs cabin, which this robot does not have"
+    choice = Pool([TURN], notes.append, unfit={"turn": lacking}).choose(situation("slip_turning"))
+    assert choice.strategy is None
+    assert choice.candidates[0].refused == lacking

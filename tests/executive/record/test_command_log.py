@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from executive.config.backends import BackendRequest
+from executive.core.devices import CABIN, CAMERAS, DRIVE, HEAD, LINK
 from executive.core.rig import RigCalibration
 from executive.core.types import (
     Call,
@@ -22,11 +23,11 @@ def test_each_command_is_written_with_its_values_and_passed_on() -> None:
     backend = FakeBackend(BackendRequest(FakeWorld(), route, 1, "geometric", RigCalibration(), None, 1.0))
     written: list[Command] = []
     devices = logged(backend.devices, written.append)
-    devices.tracks.drive(0.1, 0.2, 0.0014)
-    devices.cabin.move(0.1, -0.2)
-    devices.head.point(0.3, 0.4)
-    devices.cameras.take(Shot((0, 1), (Window(1, 2, 30, 40), Window(5, 6, 70, 80)), 0.5))
-    devices.link.call(Call(0.0, Reason.TILT, "leaning"))
+    devices[DRIVE].drive(0.1, 0.2, 0.0014)
+    devices[CABIN].move(0.1, -0.2)
+    devices[HEAD].point(0.3, 0.4)
+    devices[CAMERAS].take(Shot((0, 1), (Window(1, 2, 30, 40), Window(5, 6, 70, 80)), 0.5))
+    devices[LINK].call(Call(0.0, Reason.TILT, "leaning"))
     assert [(c.device, c.verb) for c in written] == [
         ("tracks", "drive"),
         ("cabin", "move"),
@@ -45,7 +46,7 @@ def test_a_stop_is_written_once_after_a_drive() -> None:
     route = (Segment(Point(2.0, 0.0), Point(3.0, 0.0), 0.03, 0.25, 0.03),)
     backend = FakeBackend(BackendRequest(FakeWorld(), route, 1, "geometric", RigCalibration(), None, 1.0))
     written: list[Command] = []
-    tracks = logged(backend.devices, written.append).tracks
+    tracks = logged(backend.devices, written.append)[DRIVE]
     tracks.stop()
     tracks.drive(0.1, 0.1, 0.0014)
     tracks.stop()

@@ -118,7 +118,7 @@ def test_a_key_that_nobody_owns_is_a_problem(short):
 def test_an_instrument_ticks_and_has_the_last_word(patience, short, tmp_path, patient, outcome):
     patience()
     done = run(short(f"patience: {patient}\n"), RunOptions(out=tmp_path / "run", bar=False, report=False))
-    assert done.result["outcome"] == outcome
+    assert done.result.outcome == outcome
     assert done.exit_code == 1
 
 
@@ -142,14 +142,16 @@ from pathlib import Path
 
 found = importlib.metadata.entry_points
 def without(**which):
-    return [point for point in found(**which) if not point.value.startswith("proving")]
+    every = (point for group in found().groups for point in found(group=group))
+    kept = importlib.metadata.EntryPoints(p for p in every if not p.value.startswith("proving"))
+    return kept.select(**which)
 importlib.metadata.entry_points = without
 sys.modules["proving"] = None  # importing it fails
 
 from executive.run.app import RunOptions, run
 done = run(Path(sys.argv[1]), RunOptions(out=Path(sys.argv[2]), bar=False))
-assert done.result["outcome"] == "reached", done.result
-assert (done.result["expectations"], done.result["safety"]) == ([], [])
+assert done.result.outcome == "reached", done.result
+assert (done.result.expectations, done.result.safety) == ((), ())
 sys.exit(done.exit_code)
 """
 

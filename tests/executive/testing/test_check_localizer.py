@@ -54,8 +54,8 @@ def test_the_overhead_localizer_keeps_every_promise():
         (replace(OVERHEAD, sources=("trend",)), "geometric", "no fix"),
         (replace(OVERHEAD, expected_markers=lambda rig: 2), "geometric", "2 markers at most, got 4"),
         (OVERHEAD, "full", "got the tier full"),
-        (made_by(Unending), "geometric", "did not end"),
-        (made_by(LookingAway), "geometric", "the head can look"),
+        (made_by(Unending), "geometric", "ends within its budget"),
+        (made_by(LookingAway), "geometric", "a head can look"),
     ],
 )
 def test_a_broken_promise_is_named(spec, tier, said):

@@ -9,7 +9,7 @@ import pytest
 from executive.config.backends import BackendRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import Point, Segment
-from executive.testing import BACKEND, FakeBackend, FakeWorld, check_backend
+from executive.testing import BACKEND, FakeBackend, FakeWorld, check_backend, fake_with
 from executive.testing.check_backend import BackendBreach
 
 ROUTE = (Segment(Point(2.0, 0.0), Point(3.0, 0.0), 0.03, 0.25, 0.03),)
@@ -51,3 +51,18 @@ def test_checker_names_the_broken_promise(broken: type[FakeBackend], promise: st
 def test_checker_refuses_a_tier_that_is_not_offered() -> None:
     with pytest.raises(BackendBreach, match="offers"):
         check_backend(BACKEND, replace(REQUEST, tier="full"))
+
+
+def test_a_robot_with_some_of_its_devices_keeps_every_promise() -> None:
+    check_backend(fake_with("tracks", "cameras", "link"), REQUEST)
+
+
+def test_a_device_declared_but_not_there_is_noticed() -> None:
+    boastful = replace(BACKEND, create=lambda request: FakeBackend(request, ("tracks",)))
+    with pytest.raises(BackendBreach, match="its devices are those that its spec names"):
+        check_backend(boastful, REQUEST)
+
+
+def test_a_robot_without_a_drive_is_noticed() -> None:
+    with pytest.raises(BackendBreach, match="serves as a drive"):
+        check_backend(fake_with("cameras"), REQUEST)

@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from executive.core.clock import Clock
+from executive.core.devices import CABIN, TRACKS
 from executive.core.errors import ConfigError
+from executive.core.ports import Devices
 from executive.core.types import (
     CabinReading,
     Outcome,
@@ -130,9 +132,9 @@ def services(pool: Any = None) -> Any:
         clock=Clock(1.0),
         pool=pool or ScriptedPool(),
         diary=[],
-        devices=SimpleNamespace(
-            tracks=SimpleNamespace(stop=lambda: None),
-            cabin=SimpleNamespace(read=lambda: CabinReading(0.0, 0.0, 0.0, False)),
+        devices=Devices(
+            TRACKS.fit(SimpleNamespace(stop=lambda: None)),
+            CABIN.fit(SimpleNamespace(read=lambda: CabinReading(0.0, 0.0, 0.0, False))),
         ),
         classification=SimpleNamespace(
             predicted=lambda: pose,

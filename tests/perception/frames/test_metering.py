@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from executive.core.clock import Clock
+from executive.core.devices import CAMERAS
 from executive.core.ports import Devices
 from executive.core.rig import RigCalibration
 from executive.core.types import (
@@ -48,10 +49,7 @@ class Cameras:
 
 
 def metering(cameras):
-    devices = Devices(
-        tracks=None, cabin=None, head=None, cameras=cameras, inclinometer=None, tether=None, link=None
-    )
-    return Metering(devices, RigCalibration(), Clock())
+    return Metering(Devices(CAMERAS.fit(cameras)), RigCalibration(), Clock())
 
 
 def measured(light):

@@ -56,7 +56,7 @@ def test_a_killed_worker_loses_no_case_and_cases_come_out_as_locally(cluster, wr
     campaign = load_campaign(file)
     scenario = resolved(campaign, case_number(campaign, 5))
     here = app.run_scenario(scenario, app.RunOptions(out=tmp_path / "here", bar=False, report=False))
-    assert here.result["digest"] == there[5]
+    assert here.result.digest == there[5]
     summary = json.loads((remote / "campaign.json").read_text())["summary"]
     assert summary["cases"] == 8
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 from contextlib import closing
 
 import pytest
 
+from executive.record import read_result
 from executive.run import app
 from proving.engine import CaseClass, run_cases, settle
 from proving.engine.server import ForkServer
@@ -41,11 +41,11 @@ def test_each_bad_case_is_classed_and_the_good_one_does_not_notice(endings):
         assert ending.attempts == (2 if ending.kind is CaseClass.INFRASTRUCTURE else 1), name
 
     results = {name: settle(ending) for name, ending in endings.items()}
-    assert results["good"]["outcome"] == "reached"
-    assert all(results[name]["outcome"] == "error" for name in BAD)
+    assert results["good"].outcome == "reached"
+    assert all(results[name].outcome == "error" for name in BAD)
     for name, ending in endings.items():
-        assert json.loads((ending.case.folder / "result.json").read_text()) == results[name]
-        assert results[name]["mission_s"] >= 20.0, "the record up to the fault is evaluated"
+        assert read_result(ending.case.folder / "result.json") == results[name]
+        assert results[name].mission_s >= 20.0, "the record up to the fault is evaluated"
     assert "string_at" in endings["segfault"].detail, "the log shows where it crashed"
     assert "in hang" in (endings["hang"].case.folder / "output.log").read_text()
     assert not (endings["good"].case.folder / "output.log").exists()
@@ -61,7 +61,7 @@ def test_a_case_comes_out_as_by_longarm_run(server, case, tmp_path):
     one = case()
     ending = run_alone(server, one)
     alone = app.run(one.file, app.RunOptions(out=tmp_path / "alone", bar=False))
-    assert settle(ending)["digest"] == alone.result["digest"]
+    assert settle(ending).digest == alone.result.digest
     assert (alone.folder / "report.html").is_file()
     assert not (one.folder / "report.html").exists(), "a report per case would take too long"
 
@@ -70,7 +70,7 @@ def test_what_cannot_be_resolved_is_refused_and_not_begun_again(server, case):
     ending = run_alone(server, case(text="sede: 4\n"))
     assert (ending.kind, ending.attempts) == (CaseClass.REFUSED, 1)
     assert 'unknown key "sede"' in ending.detail
-    assert settle(ending)["outcome"] == "error"
+    assert settle(ending).outcome == "error"
 
 
 def test_what_lies_in_the_folder_and_is_not_of_a_run_is_left_alone(server, case):
@@ -78,7 +78,7 @@ def test_what_lies_in_the_folder_and_is_not_of_a_run_is_left_alone(server, case)
     one.folder.mkdir(parents=True)
     (one.folder / "notes.txt").write_text("mine")
     (one.folder / "result.json").write_text("of an earlier run")
-    assert settle(run_alone(server, one))["outcome"] == "reached"
+    assert settle(run_alone(server, one)).outcome == "reached"
     assert (one.folder / "notes.txt").read_text() == "mine"
 
 

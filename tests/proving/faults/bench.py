@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from executive.config.backends import BackendRequest
+from executive.core.devices import CAMERAS, HEAD
 from executive.core.rig import RigCalibration
 from executive.core.types import (
     Centres,
@@ -73,13 +74,13 @@ class Bench:
 
     def centres(self, fault: Fault, shot: Shot = SHOT) -> tuple[Centres, Centres]:
         """What a camera fault makes of an answer of the geometric tier: before and after."""
-        before = self.finish(self.robot.devices.cameras.take(shot)).value
+        before = self.finish(self.robot.devices[CAMERAS].take(shot)).value
         after = self.finish(self.answering(fault, before).take(shot)).value
         return before, after
 
     def images(self, fault: Fault) -> tuple[Images, Images]:
         """The same for images, a gradient with a bright pixel that goes on and off."""
-        before = images(self.robot.devices.head.read())
+        before = images(self.robot.devices[HEAD].read())
         return before, self.finish(self.answering(fault, before).take(before.shot)).value
 
     def answering(self, fault: Fault, answer: Images | Centres) -> Any:
@@ -90,7 +91,7 @@ class Bench:
                 windows = {"windows": shot.windows} if isinstance(answer, Images) else {}
                 return Ready(Outcome(Reason.DONE, value=replace(answer, shot=shot, **windows)))
 
-        return fault.wrap(replace(self.robot.devices, cameras=Cameras()), self.cue).cameras
+        return fault.wrap(self.robot.devices.replace(CAMERAS, Cameras()), self.cue)[CAMERAS]
 
 
 def images(head: HeadReading) -> Images:

@@ -10,8 +10,9 @@ from typing import Any
 from unittest.mock import patch
 
 from executive.cli import invoke
-from executive.record import History, events
+from executive.record import History, events, read_result
 from executive.record.reader import is_complete
+from executive.record.run_result import FaultStages
 from executive.run.app import Finished, RunOptions
 from executive.run.app import run as run_file
 from executive.testing import FakeBackend
@@ -39,12 +40,12 @@ class Done:
 
     @property
     def outcome(self) -> str:
-        return str(self.finished.result["outcome"])
+        return str(self.finished.result.outcome)
 
     @property
-    def rows(self) -> dict[str, dict[str, Any]]:
+    def rows(self) -> dict[str, FaultStages]:
         """What became of each fault, by its name."""
-        return {row["name"]: row for row in self.finished.result["faults"]}
+        return {row.name: row for row in self.finished.result.faults}
 
     @cached_property
     def record(self) -> History:
@@ -58,7 +59,7 @@ class Done:
     def breaches(self) -> list[str]:
         """Every promise of a run's end that was not kept."""
         folder, stop = self.finished.folder, self.record.last(events.Stop)
-        result = json.loads((folder / "result.json").read_text())
+        result = read_result(folder / "result.json")
         drives, stops = self.times("tracks", "drive"), self.times("tracks", "stop")
         promises = {
             "the record is closed": is_complete(folder / "record.mcap"),

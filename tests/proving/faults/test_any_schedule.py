@@ -106,4 +106,4 @@ def test_any_schedule_of_faults_leaves_the_rover_safe(
     assert set(done.rows) == {fault["name"] for fault in schedule}
     if done.outcome == "error":
         kinds = {kind for fault in schedule for kind in fault}
-        assert kinds & {"node_raises", "value_corrupted", "node_forced"}, done.finished.result["reason"]
+        assert kinds & {"node_raises", "value_corrupted", "node_forced"}, done.finished.result.reason

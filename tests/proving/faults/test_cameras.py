@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from executive.core.devices import CAMERAS
 from executive.core.types import Reason, Shot
 from proving.faults.cameras import (
     CameraDead,
@@ -73,7 +74,7 @@ def test_a_frozen_frame_is_the_first_of_its_shot_over_and_over(bench):
 
 def test_a_late_frame_is_held_back_and_keeps_its_time(bench):
     fault = LateFrame(Lateness(by="30 s"))
-    action = bench.around(fault).cameras.take(SHOT)
+    action = bench.around(fault)[CAMERAS].take(SHOT)
     taken = bench.finish(action)
     now_s = bench.robot.clock.now_s
     assert taken.value.time_s == now_s - 30.0
@@ -82,7 +83,7 @@ def test_a_late_frame_is_held_back_and_keeps_its_time(bench):
 
 
 def test_a_late_frame_can_be_given_up(bench):
-    action = bench.around(LateFrame(Lateness(by="30 s"))).cameras.take(SHOT)
+    action = bench.around(LateFrame(Lateness(by="30 s")))[CAMERAS].take(SHOT)
     for _ in range(10):
         action.poll()
         bench.robot.advance()
@@ -92,7 +93,7 @@ def test_a_late_frame_can_be_given_up(bench):
 
 def test_a_missing_frame_is_a_failure_of_the_device(bench):
     fault = MissingFrame(Nothing())
-    outcome = bench.finish(bench.around(fault).cameras.take(SHOT))
+    outcome = bench.finish(bench.around(fault)[CAMERAS].take(SHOT))
     assert (outcome.reason, outcome.value) == (Reason.DEVICE, None)
     assert fault.took_effect()
 

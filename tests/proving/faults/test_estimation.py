@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from executive.core.devices import INCLINOMETER
 from executive.core.ports import LocaliseRequest
 from executive.core.types import PoseEstimate, PoseSource, Quality
 from executive.testing import OverheadLocalizer
@@ -81,7 +82,7 @@ def test_without_a_pose_from_before_a_stale_one_is_the_first(locate):
 
 def test_a_biased_inclinometer_is_off_by_a_constant(bench):
     fault = InclinometerBias(Bias(roll="0.1 rad", pitch="-0.2 rad"))
-    inclinometer = bench.around(fault).inclinometer
+    inclinometer = bench.around(fault)[INCLINOMETER]
     bench.level.now = 0.0
     assert (inclinometer.read().roll_rad, fault.took_effect()) == (0.0, False)
     bench.level.now = 0.5

@@ -33,14 +33,14 @@ def test_a_node_forced_before_its_tick_does_nothing(tmp_path):
     fixes = [at for at in done.record.all(PoseEstimate) if at.event.is_fix]
     assert max(at.time_s for at in fixes) < 60.0
     assert done.outcome == "help"
-    assert done.rows["node_forced"]["fired"]
+    assert done.rows["node_forced"].fired
     assert done.breaches() == []
 
 
 def test_a_node_forced_after_its_tick_has_done_its_work(tmp_path):
     done = run(tmp_path, forced("success", "after", "facing"))
     assert {change.status for change in changes(done, "facing")} - {"invalid"} == {"success"}
-    assert done.rows["node_forced"]["fired"]
+    assert done.rows["node_forced"].fired
     assert done.breaches() == []
 
 
@@ -75,14 +75,14 @@ def test_a_node_forced_to_run_keeps_the_rover_at_rest_until_the_time_is_up(tmp_p
 def test_a_node_forced_for_a_while_takes_up_its_work_again(tmp_path):
     done = run(tmp_path, forced("running", "before") | {"for": "10 min"})
     assert done.outcome == "reached"
-    assert done.rows["node_forced"]["t_off_s"] == 660.0
+    assert done.rows["node_forced"].t_off_s == 660.0
     assert done.breaches() == []
 
 
 def test_a_hanging_drive_ends_by_itself_and_no_other_begins(tmp_path):
     done = run(tmp_path, {"node_hangs": {"node": "drive_leg"}, **EARLY})
     assert done.outcome == "time_limit"
-    onset_s = done.rows["node_hangs"]["t_on_s"]
+    onset_s = done.rows["node_hangs"].t_on_s
     assert [t for t in done.times("tracks", "drive") if t > onset_s] == []
     assert done.breaches() == []
 
@@ -98,15 +98,15 @@ def test_a_node_that_hung_for_a_while_goes_on(tmp_path):
 def test_a_node_that_raises_ends_the_run_as_an_error_with_the_evidence(tmp_path, node, at):
     done = run(tmp_path, {"node_raises": {"node": node, "at": at}, **EARLY})
     assert (done.outcome, done.finished.exit_code) == ("error", 3)
-    assert f"/{node}: Injected: raised by injection" in done.finished.result["reason"]
-    assert done.rows["node_raises"]["fired"]
+    assert f"/{node}: Injected: raised by injection" in done.finished.result.reason
+    assert done.rows["node_raises"].fired
     assert done.breaches() == []
 
 
 def test_late_ticks_slow_the_mission_and_do_not_break_it(tmp_path):
     done = run(tmp_path, {"late_tick": {"by": "20 s"}, **EARLY})
     assert done.outcome == "reached"
-    assert done.finished.result["mission_s"] > 1.3 * run(tmp_path / "..").finished.result["mission_s"]
+    assert done.finished.result.mission_s > 1.3 * run(tmp_path / "..").finished.result.mission_s
     assert done.breaches() == []
 
 
@@ -122,39 +122,39 @@ def test_a_corrupted_value_leaves_the_rover_safe(tmp_path, value, kind):
 
 def test_a_way_point_is_not_reached_because_the_plan_has_forgotten_it(tmp_path):
     done = run(tmp_path, {"value_corrupted": {"value": "segment", "kind": "stale"}, **EARLY})
-    assert (done.outcome, done.finished.result["reason"]) == ("safe_hold", "2 of 3 way-points were reached")
+    assert (done.outcome, done.finished.result.reason) == ("safe_hold", "2 of 3 way-points were reached")
 
 
 def test_a_way_point_is_not_reached_because_a_node_says_so(tmp_path):
     done = run(tmp_path, forced("success", "before", "trek_to"))
     assert done.outcome == "help"
-    assert "from a way-point said to be reached" in done.finished.result["reason"]
+    assert "from a way-point said to be reached" in done.finished.result.reason
 
 
 def test_a_pose_that_is_no_number_never_steers(tmp_path):
     done = run(tmp_path, {"pose_nan": {}, **EARLY})
     assert done.outcome == "help"
-    assert "the pose found is no number" in done.finished.result["reason"]
+    assert "the pose found is no number" in done.finished.result.reason
     assert done.breaches() == []
 
 
 def test_an_old_pose_is_refused(tmp_path):
     done = run(tmp_path, {"pose_stale": {}, **EARLY})
     assert done.outcome == "help"
-    assert "older than the question" in done.finished.result["reason"]
+    assert "older than the question" in done.finished.result.reason
 
 
 def test_a_stuck_encoder_stops_the_drive_before_the_belt_has_run_far(tmp_path):
     done = run(tmp_path, {"encoder_stuck": {"side": "left"}, **EARLY})
     assert done.outcome == "help"
-    assert "the left belt counted" in done.finished.result["reason"]
+    assert "the left belt counted" in done.finished.result.reason
 
 
 def test_a_missing_strategy_is_passed_over_where_it_would_have_been_chosen(tmp_path):
     fault = {"strategy_missing": {"strategy": "wait_for_sight"}, "from": {"time": "0 s"}}
     done = run(tmp_path, fault, BLIND | {"for": "30 min"})
-    assert done.rows["strategy_missing"]["fired"]
-    assert "wait_for_sight" not in {row["name"] for row in done.finished.result["strategies"]}
+    assert done.rows["strategy_missing"].fired
+    assert "wait_for_sight" not in {row.name for row in done.finished.result.strategies}
 
 
 def test_a_missing_strategy_that_nobody_asked_for_proves_nothing(tmp_path):
@@ -165,7 +165,7 @@ def test_a_missing_strategy_that_nobody_asked_for_proves_nothing(tmp_path):
 def test_a_wrong_strategy_does_nothing_and_is_found_out(tmp_path):
     fault = {"strategy_wrong": {"strategy": "wait_for_sight"}, "from": {"time": "0 s"}}
     done = run(tmp_path, fault, BLIND)
-    assert "wait_for_sight" in {row["name"] for row in done.finished.result["strategies"]}
+    assert "wait_for_sight" in {row.name for row in done.finished.result.strategies}
     assert changes(done, "wait_for_sight/sequence/wait") == []
     assert done.outcome == "help"
 
@@ -173,9 +173,9 @@ def test_a_wrong_strategy_does_nothing_and_is_found_out(tmp_path):
 def test_a_slow_strategy_begins_late_and_helps_all_the_same(tmp_path):
     def waited_s(*faults):
         done = run(tmp_path, *faults, BLIND | {"for": "15 min"})
-        (row,) = [r for r in done.finished.result["strategies"] if r["name"] == "wait_for_sight"]
-        assert (done.outcome, row["helped"]) == ("reached", True)
-        return row["t_end_s"] - row["t_s"]
+        (row,) = [r for r in done.finished.result.strategies if r.name == "wait_for_sight"]
+        assert (done.outcome, row.helped) == ("reached", True)
+        return row.t_end_s - row.t_s
 
     slow = {"strategy_slow": {"strategy": "wait_for_sight", "by": "10 min"}, "from": {"time": "0 s"}}
     assert waited_s(slow) == waited_s() + 600.0

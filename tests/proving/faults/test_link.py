@@ -1,10 +1,11 @@
 """Faults of the link, around a link that answers after ten minutes, as far as it is called."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import pytest
 
 from executive.core.clock import Clock
+from executive.core.devices import LINK
 from executive.core.types import Call, Outcome, Reason
 from proving.faults.altered import Unanswered
 from proving.faults.link import (
@@ -48,10 +49,10 @@ def called(bench, ground):
     """Calls through a fault; the outcome, and how long it took."""
 
     def through(fault):
-        devices = replace(bench.robot.devices, link=ground)
+        devices = bench.robot.devices.replace(LINK, ground)
         begun_s = bench.robot.clock.now_s
         assert not fault.took_effect()
-        outcome = bench.finish(fault.wrap(devices, bench.cue).link.call(CALL))
+        outcome = bench.finish(fault.wrap(devices, bench.cue)[LINK].call(CALL))
         return outcome, bench.robot.clock.now_s - begun_s
 
     return through
@@ -90,7 +91,7 @@ def test_a_lost_call_never_reaches_ground_and_times_out(called, ground, fault):
 
 
 def test_some_calls_get_through_a_link_that_drops_some(bench, ground):
-    link = LinkDrop(Dropping(chance=0.5)).wrap(replace(bench.robot.devices, link=ground), bench.cue).link
+    link = LinkDrop(Dropping(chance=0.5)).wrap(bench.robot.devices.replace(LINK, ground), bench.cue)[LINK]
     for _ in range(200):
         link.call(CALL)
     assert 70 < len(ground.calls) < 130
@@ -99,7 +100,7 @@ def test_some_calls_get_through_a_link_that_drops_some(bench, ground):
 def test_an_outage_swallows_the_answer_to_a_call_made_before(bench, ground):
     fault = LinkOutage(Patience())
     bench.level.now = 0.0
-    action = fault.wrap(replace(bench.robot.devices, link=ground), bench.cue).link.call(CALL)
+    action = fault.wrap(bench.robot.devices.replace(LINK, ground), bench.cue)[LINK].call(CALL)
     bench.level.now = 1.0
     assert bench.finish(action).reason is Reason.TIMEOUT
     assert (ground.calls, fault.took_effect()) == ([CALL], True)

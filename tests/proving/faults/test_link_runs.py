@@ -18,7 +18,7 @@ FAULTS = [
 def test_a_call_over_a_faulty_link_ends_in_help_at_rest(tmp_path, fault):
     done = run(tmp_path, BLIND, fault | {"from": {"time": "0 s"}})
     assert done.outcome == "help"
-    assert done.rows[next(iter(fault))]["fired"]
+    assert done.rows[next(iter(fault))].fired
     (called_s,) = done.times("link", "call")
     assert [t for t in done.times("tracks", "drive") if t >= called_s] == []
     assert done.breaches() == []

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from executive.core.devices import DRIVE
 from executive.core.types import Reason
 from proving.faults.parameters import OneTrack
 from proving.faults.tracks import (
@@ -20,7 +21,7 @@ SPEED_M_S = 0.0014
 
 
 def drive(bench, fault, left_m=0.1, right_m=0.1):
-    tracks = bench.around(fault).tracks
+    tracks = bench.around(fault)[DRIVE]
     return tracks, bench.finish(tracks.drive(left_m, right_m, SPEED_M_S))
 
 
@@ -51,7 +52,7 @@ def test_a_miscounting_encoder_does_not_jump_when_it_recovers(bench):
 
 @pytest.mark.parametrize("fault", [EncoderScale(Scale(side="left")), EncoderStuck(OneTrack(side="left"))])
 def test_an_encoder_fault_has_no_effect_while_the_rover_rests(bench, fault):
-    tracks = bench.around(fault).tracks
+    tracks = bench.around(fault)[DRIVE]
     bench.robot.advance()
     tracks.read()
     assert not fault.took_effect()
@@ -59,7 +60,7 @@ def test_an_encoder_fault_has_no_effect_while_the_rover_rests(bench, fault):
 
 @pytest.mark.parametrize("fault", [EncoderScale(Scale(side="left")), EncoderStuck(OneTrack(side="left"))])
 def test_a_cancelled_drive_stays_cancelled_behind_the_fault(bench, fault):
-    tracks = bench.around(fault).tracks
+    tracks = bench.around(fault)[DRIVE]
     action = tracks.drive(0.1, 0.1, SPEED_M_S)
     bench.robot.advance()
     tracks.stop()
@@ -68,7 +69,7 @@ def test_a_cancelled_drive_stays_cancelled_behind_the_fault(bench, fault):
 
 def test_a_belt_whose_encoder_is_stuck_runs_on_until_it_is_stopped(bench):
     fault = EncoderStuck(OneTrack(side="left"))
-    tracks = bench.around(fault).tracks
+    tracks = bench.around(fault)[DRIVE]
     action = tracks.drive(0.02, 0.02, SPEED_M_S)
     for _ in range(100):
         assert action.poll() is None
@@ -83,7 +84,7 @@ def test_a_belt_whose_encoder_is_stuck_runs_on_until_it_is_stopped(bench):
 
 
 def test_a_drive_ends_once_a_stuck_encoder_counts_again(bench):
-    tracks = bench.around(EncoderStuck(OneTrack(side="right"))).tracks
+    tracks = bench.around(EncoderStuck(OneTrack(side="right")))[DRIVE]
     action = tracks.drive(0.02, 0.02, SPEED_M_S)
     for _ in range(30):
         action.poll()
@@ -106,7 +107,7 @@ def test_an_encoder_that_loses_counts_lets_the_belt_run_further(bench):
 
 def test_a_garbled_current_is_anything_and_the_rest_is_true(bench):
     fault = CurrentsGarbage(Garbage(side="left", up_to="2 A"))
-    tracks = bench.around(fault).tracks
+    tracks = bench.around(fault)[DRIVE]
     seen = [tracks.read() for _ in range(100)]
     assert any(math.isnan(reading.left_current_a) for reading in seen)
     assert len({reading.left_current_a for reading in seen}) > 50

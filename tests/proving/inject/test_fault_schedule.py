@@ -55,10 +55,10 @@ def test_a_fault_begins_and_ends_in_its_time(finished):
     (on, off) = told(record)
     assert 120.0 <= on[0] < 260.0  # when the rover next moved
     assert off == (420.0, "encoder_scale", False)
-    (row,) = done.result["faults"]
-    assert (row["fired"], row["t_on_s"], row["t_off_s"]) == (True, on[0], 420.0)
-    assert (row["t_armed_s"], row["expected"]) == (120.0, "track_asymmetry")
-    assert (done.result["outcome"], done.exit_code) == ("reached", 0)
+    (row,) = done.result.faults
+    assert (row.fired, row.t_on_s, row.t_off_s) == (True, on[0], 420.0)
+    assert (row.t_armed_s, row.expected) == (120.0, "track_asymmetry")
+    assert (done.result.outcome, done.exit_code) == ("reached", 0)
 
 
 @pytest.mark.parametrize(
@@ -89,16 +89,16 @@ def test_a_fault_may_wait_for_a_strategy(finished):
 
 def test_a_fault_that_never_fired_makes_the_run_invalid(finished):
     done, record = finished("  - frozen_frame: {}\n    name: late\n    from: {time: 20 h}\n")
-    assert done.result["outcome"] == "invalid"
-    assert done.result["reason"] == "late never took effect; the run ended reached"
+    assert done.result.outcome == "invalid"
+    assert done.result.reason == "late never took effect; the run ended reached"
     assert done.exit_code == 1
-    assert [(row["name"], row["fired"]) for row in done.result["faults"]] == [("late", False)]
+    assert [(row.name, row.fired) for row in done.result.faults] == [("late", False)]
     assert record.last(events.Stop).event.outcome == "invalid"
 
 
 def test_a_fault_that_was_on_but_changed_nothing_makes_the_run_invalid(finished):
     done, _ = finished("  - encoder_scale: {side: left}\n    from: {time: 0 s}\n    for: 3 s\n")
-    assert done.result["outcome"] == "invalid"
+    assert done.result.outcome == "invalid"
 
 
 def test_the_catalogue_lists_every_fault_with_its_parameters(capsys):
@@ -117,7 +117,7 @@ def test_every_fault_leads_to_a_hypothesis_that_exists():
 
 
 def rows(done):
-    return {row["name"]: row for row in done.result["faults"]}
+    return {row.name: row for row in done.result.faults}
 
 
 def test_a_fault_may_wait_for_what_the_record_shows(finished):
@@ -125,7 +125,7 @@ def test_a_fault_may_wait_for_what_the_record_shows(finished):
     armed = first(record, events.FaultArmedEvent, lambda e: True)
     poses = [at for at in record.all(PoseEstimate) if at.time_s <= armed]
     assert poses[-1].event.x_m > 2.05
-    assert rows(done)["encoder_scale"]["t_armed_s"] == armed
+    assert rows(done)["encoder_scale"].t_armed_s == armed
 
 
 def test_a_fault_may_wait_for_a_phase(finished):
@@ -136,7 +136,7 @@ def test_a_fault_may_wait_for_a_phase(finished):
         if (at.event.device, at.event.verb) == ("tracks", "drive")
         and at.event.values["left_m"] * at.event.values["right_m"] >= 0
     ]
-    armed = rows(done)["encoder_scale"]["t_armed_s"]
+    armed = rows(done)["encoder_scale"].t_armed_s
     assert drives[1] <= armed <= drives[1] + 1.0
 
 
@@ -146,9 +146,9 @@ def test_a_group_comes_and_goes_together(finished):
         "      - frozen_frame: {}\n      - encoder_scale: {side: left}\n"
     )
     told = rows(done)
-    assert {row["cause"] for row in told.values()} == {"storm"}
-    assert told["frozen_frame"]["t_armed_s"] == told["encoder_scale"]["t_armed_s"]
-    assert told["frozen_frame"]["t_off_s"] == told["frozen_frame"]["t_armed_s"] + 480.0
+    assert {row.cause for row in told.values()} == {"storm"}
+    assert told["frozen_frame"].t_armed_s == told["encoder_scale"].t_armed_s
+    assert told["frozen_frame"].t_off_s == told["frozen_frame"].t_armed_s + 480.0
 
 
 def test_a_fault_that_comes_and_goes_acts_only_while_it_is_there(finished):
@@ -165,7 +165,7 @@ def test_what_was_left_to_chance_is_written_with_the_run(finished):
     faults = "  - encoder_scale: {side: {choice: [left, right]}, factor: {uniform: [101 %, 104 %]}}\n"
     done, _ = finished(faults)
     again = run(done.folder / "scenario.yaml", RunOptions(out=done.folder / "again", bar=False))
-    assert again.result["digest"] == done.result["digest"]
+    assert again.result.digest == done.result.digest
     assert "uniform" not in (done.folder / "scenario.yaml").read_text()
 
 
@@ -176,4 +176,4 @@ def test_equal_profiles_without_a_cause_come_each_in_its_own_time(finished):
     )
     done, _ = finished(entry.replace("SIDE", "left") + entry.replace("SIDE", "right"))
     told = rows(done)
-    assert told["left"]["t_on_s"] != told["right"]["t_on_s"]
+    assert told["left"].t_on_s != told["right"].t_on_s

@@ -27,7 +27,7 @@ from executive.record.events import (
     TruthEvent,
     Verdict,
 )
-from executive.record.rows import first_violated, row, worst_first
+from executive.record.rows import JudgedRow, first_violated, row, worst_first
 from executive.run.judging import exit_code
 from proving.judge.expect import Expect
 from proving.judge.expectations import judge
@@ -131,8 +131,8 @@ def story(tmp_path):
 )
 def test_an_expectation_is_met_or_not_by_so_much_and_since_then(story, expect, met, robustness, violated_s):
     (found,) = story.judged(**expect)
-    assert (found["met"], found["t_violation_s"]) == (met, violated_s)
-    assert found["robustness"] == (None if robustness is None else pytest.approx(robustness))
+    assert (found.met, found.t_violation_s) == (met, violated_s)
+    assert found.robustness == (None if robustness is None else pytest.approx(robustness))
 
 
 def test_what_failed_first_comes_first(story):
@@ -142,21 +142,21 @@ def test_what_failed_first_comes_first(story):
         max_tilt={"below": "25 deg"},
         max_tether={"below": "9 N"},
     )
-    assert first_violated(rows)["text"] == "max_tilt below 25 deg"
-    assert [r["t_violation_s"] for r in worst_first(rows)] == [6.0, 12.0, 20.0, None]
+    assert first_violated(rows).text == "max_tilt below 25 deg"
+    assert [r.t_violation_s for r in worst_first(rows)] == [6.0, 12.0, 20.0, None]
 
 
 def test_a_fault_that_never_took_effect_meets_nothing(story):
     (found,) = story.judged(detected=[{"fault": "other"}])
-    assert (found["met"], found["warning"]) == (False, "other never took effect")
+    assert (found.met, found.warning) == (False, "other never took effect")
 
 
 def test_safety_names_what_broke_and_when(tmp_path, story):
     beyond, tilt, tether, rest = story.safety()
-    assert (beyond["met"], beyond["t_violation_s"]) == (False, 8.0)
-    assert (tilt["met"], tilt["robustness"]) == (True, pytest.approx(4.0))
-    assert (tether["met"], tether["robustness"]) == (True, pytest.approx(7.0))
-    assert rest["met"] is True
+    assert (beyond.met, beyond.t_violation_s) == (False, 8.0)
+    assert (tilt.met, tilt.robustness) == (True, pytest.approx(4.0))
+    assert (tether.met, tether.robustness) == (True, pytest.approx(7.0))
+    assert rest.met is True
 
 
 @pytest.mark.parametrize(
@@ -165,27 +165,27 @@ def test_safety_names_what_broke_and_when(tmp_path, story):
 )
 def test_at_rest_is_what_truth_and_tracks_both_say(tmp_path, last, moving, rests):
     truth = {19.0: true(0.19), 20.0: true(*last)}
-    assert Story(tmp_path, {20.0: reported(moving)}, truth).safety()[3]["met"] is rests
+    assert Story(tmp_path, {20.0: reported(moving)}, truth).safety()[3].met is rests
 
 
 def test_a_rover_seen_at_rest_before_the_end_rests(tmp_path):
     """At rest the truth is sampled now and then only."""
     truth = {3.0: true(0.1), 4.0: true(0.2), 5.0: true(0.2)}
-    assert Story(tmp_path, {20.0: reported()}, truth).safety()[3]["met"] is True
+    assert Story(tmp_path, {20.0: reported()}, truth).safety()[3].met is True
 
 
 def test_of_a_record_that_breaks_off_nobody_knows_whether_it_ended_at_rest(tmp_path):
     rest = Story(tmp_path, {20.0: reported(True)}, {20.0: true(0.2)}, outcome=None).safety()[3]
-    assert (rest["met"], rest["warning"]) == (None, "the record ends without a stop")
+    assert (rest.met, rest.warning) == (None, "the record ends without a stop")
 
 
 def test_without_truth_safety_is_not_known_but_expectations_are_not_met(tmp_path):
     run = Story(tmp_path, {0.0: reported(), 20.0: reported()})
-    assert [r["met"] for r in run.safety()] == [None, None, None, True]
+    assert [r.met for r in run.safety()] == [None, None, None, True]
     rows = run.judged(
         max_tilt={"below": "9 deg"}, final_error={"below": "9 m"}, always=["true_tilt < 9 deg"], at_rest=True
     )
-    assert {r["text"]: (r["met"], r["warning"]) for r in rows} == {
+    assert {r.text: (r.met, r.warning) for r in rows} == {
         "final_error below 9000 mm": (False, "no truth was recorded"),
         "at rest at the end": (True, None),
         "max_tilt below 9 deg": (False, "no truth was recorded"),
@@ -194,15 +194,8 @@ def test_without_truth_safety_is_not_known_but_expectations_are_not_met(tmp_path
 
 
 def test_a_row_says_nothing_that_json_cannot(tmp_path):
-    assert row("x", True, math.inf, "m")["robustness"] is None
-    assert row("x", False, float(np.nan), "m", 3.0) == {
-        "text": "x",
-        "met": False,
-        "robustness": None,
-        "unit": None,
-        "t_violation_s": 3.0,
-        "warning": None,
-    }
+    assert row("x", True, math.inf, "m").robustness is None
+    assert row("x", False, float(np.nan), "m", 3.0) == JudgedRow("x", False, t_violation_s=3.0)
 
 
 @pytest.mark.parametrize(
@@ -230,9 +223,9 @@ def test_the_exit_code_stands_for_expectations_and_safety(outcome, expected, met
 
 def test_mission_time_and_path_lie_between_their_bounds(story):
     rows = story.judged(mission_time={"above": "10 s", "below": "30 s"}, path={"below": "1 mm"})
-    assert [row["met"] for row in rows] == [True, False]
-    assert rows[0]["text"] == "mission_time above 10 s and below 30 s"
-    assert rows[0]["robustness"] == pytest.approx(10.0)
+    assert [row.met for row in rows] == [True, False]
+    assert rows[0].text == "mission_time above 10 s and below 30 s"
+    assert rows[0].robustness == pytest.approx(10.0)
 
 
 def test_what_has_no_bound_is_refused_since_it_would_always_hold():

@@ -37,7 +37,7 @@ def seen(tmp_path: Path):
 
 
 def met(rows) -> list[bool]:
-    return [row["met"] for row in rows]
+    return [row.met for row in rows]
 
 
 def test_a_node_ends_by_success_failure_with_its_reason_or_halted_if_it_was_under_way(seen) -> None:
@@ -62,8 +62,8 @@ def test_after_a_step_that_did_not_come_no_step_is_met(seen) -> None:
     steps = [{"back_off/localise#2": "success"}, {"drive_leg": "blocked"}, {"back_off/localise": "success"}]
     rows = list(in_order(steps, seen, 9.0))
     assert met(rows) == [True, False, False]
-    assert rows[1]["text"] == "step 2: drive_leg blocked"
-    assert rows[1]["t_violation_s"] == 9.0
+    assert rows[1].text == "step 2: drive_leg blocked"
+    assert rows[1].t_violation_s == 9.0
 
 
 def test_one_end_answers_one_step_only(seen) -> None:
@@ -73,7 +73,7 @@ def test_one_end_answers_one_step_only(seen) -> None:
 def test_never_tells_when_it_came_first(seen) -> None:
     rows = list(never([{"drive_leg": "tilt"}, {"localise": "success"}], seen))
     assert met(rows) == [True, False]
-    assert rows[1]["t_violation_s"] == 4.0
+    assert rows[1].t_violation_s == 4.0
 
 
 @pytest.mark.parametrize(
@@ -91,4 +91,4 @@ def test_times_counts_ends_and_tells_when_it_was_one_too_many(
 ) -> None:
     wanted = Times(of={"localise": "success"}, at_least=at_least, at_most=at_most)
     (row,) = times([wanted], seen, 9.0)
-    assert (row["met"], row["robustness"], row["t_violation_s"]) == (holds, spare, violated_s)
+    assert (row.met, row.robustness, row.t_violation_s) == (holds, spare, violated_s)

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from executive.record import RunResult
+from executive.record.rows import JudgedRow
 from proving.engine import Case, CaseClass, Ending
 from proving.judge.verdict import Terms, Word, judged, repeat_command
 
@@ -14,12 +16,13 @@ OK = Ending(CASE, CaseClass.OK)
 
 
 def result(outcome="reached", expectations=(), reason=None, **more):
-    rows = [{"robustness": None, **row} for row in expectations]
-    return {"outcome": outcome, "reason": reason, "mission_s": 600.0, "expectations": rows, **more}
+    return RunResult(
+        outcome=outcome, reason=reason, mission_s=600.0, expectations=tuple(expectations), **more
+    )
 
 
 def row(text="final_error below 30 mm", met=False, **more):
-    return {"text": text, "met": met, **more}
+    return JudgedRow(text, met, **more)
 
 
 def test_reaching_the_goal_passes_where_nothing_is_expected():

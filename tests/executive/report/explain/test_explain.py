@@ -18,6 +18,7 @@ from executive.record.events import (
     StrategyEvent,
     Verdict,
 )
+from executive.record.run_result import FaultStages
 from executive.report.explain import as_text, explain
 
 TREE = "go/selector/recover"
@@ -82,10 +83,8 @@ def test_a_failure_that_the_pool_answers_is_named_with_the_answer(folder):
     assert (found.failure[0].reason, found.failure[0].since_s) == ("blocked", 30.0)
     assert found.failure[-1].status == "running"
     assert list(found.hypotheses) == ["stuck_on_obstacle", "nominal", "tether_snag"]
-    assert found.strategies[0]["helped"] is None
-    assert found.faults == (
-        {"name": "rock", "t_on_s": 20.0, "t_off_s": None, "expected": "stuck_on_obstacle"},
-    )
+    assert found.strategies[0].helped is None
+    assert found.faults == (FaultStages("rock", fired=True, t_on_s=20.0, expected="stuck_on_obstacle"),)
 
 
 def test_by_default_the_end_is_explained_and_the_failure_behind_it(folder):
@@ -93,7 +92,7 @@ def test_by_default_the_end_is_explained_and_the_failure_behind_it(folder):
     assert found.at_s == 90.0
     assert names(found.chain) == ["call_for_help", "selector"]
     assert found.failure[0].detail == "stuck there as well"
-    assert found.strategies[0]["helped"] is False
+    assert found.strategies[0].helped is False
     assert [at.event for at in found.refusals] == ["no strategy for stuck_on_obstacle (detour: no room)"]
     assert [at.event.reason for at in found.calls] == [Reason.NO_STRATEGY]
 
@@ -103,8 +102,8 @@ def test_faults_of_the_world_are_told_from_the_simulators_record(folder):
         truth.write(FaultEvent("slip", True), 5.0)
         truth.write(FaultEvent("slip", False), 15.0)
     slip, rock = explain(folder).faults
-    assert (slip["name"], slip["t_off_s"]) == ("slip", 15.0)
-    assert rock["name"] == "rock"
+    assert (slip.name, slip.t_off_s) == ("slip", 15.0)
+    assert rock.name == "rock"
 
 
 def test_the_text_says_it_in_words_with_units(folder):
@@ -116,7 +115,7 @@ def test_the_text_says_it_in_words_with_units(folder):
         "back_off, attempt 1, against stuck_on_obstacle at 0.70: answers stuck_on_obstacle; did not help",
         "detour: no room",
         "tracks drive: left 0.1 m, right 0.1 m, speed 0.0014 m/s",
-        "rock, still; to be taken for stuck_on_obstacle",
+        "rock: still active; expected diagnosis stuck_on_obstacle",
         "crossed in 1 min 30 s",
     ):
         assert words in text

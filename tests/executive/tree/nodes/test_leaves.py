@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from executive.config.backends import BackendRequest
+from executive.core.devices import DRIVE, INCLINOMETER, TETHER
 from executive.core.rig import RigCalibration
 from executive.core.types import (
     Outcome,
@@ -26,6 +27,7 @@ from executive.core.types import (
 from executive.isc import Classification, known_channels, known_hypotheses
 from executive.isc.attitude import quat_from_heading_tilt
 from executive.pool import Pool
+from executive.record.bus import EventBus
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.testing import FakeBackend, FakeWorld, OverheadLocalizer
@@ -64,7 +66,7 @@ class Bench:
         request = BackendRequest(FakeWorld(), (SEGMENT,), 3, "geometric", RigCalibration(), None, 1.0)
         self.backend = FakeBackend(request)
         self.recorder = Recorder(folder / "record.mcap")
-        self.journal = RunJournal(self.recorder, self.backend.clock, (SEGMENT,))
+        self.journal = RunJournal(EventBus(self.backend.clock, [self.recorder.write]), (SEGMENT,))
         self.localizer: Any = OverheadLocalizer(self.backend.devices, self.backend.rig, self.backend.clock)
         self.store, self.trace = Store(), Trace()
         self.classification = self.known(0.0)
@@ -123,7 +125,7 @@ class Bench:
         return outcome
 
     def device_ends(self, port: str, method: str, reason: Reason) -> None:
-        setattr(getattr(self.backend.devices, port), method, lambda *args: Ended(Outcome(reason, "as told")))
+        setattr(self.backend.devices.named(port), method, lambda *args: Ended(Outcome(reason, "as told")))
 
 
 Setup = Callable[[Bench], None]
@@ -144,11 +146,11 @@ def sees(reason: Reason) -> Setup:
 
 
 def tilted(bench: Bench) -> None:
-    bench.backend.devices.inclinometer.read = lambda: TiltReading(bench.backend.clock.now_s, 0.6, 0.0)
+    bench.backend.devices[INCLINOMETER].read = lambda: TiltReading(bench.backend.clock.now_s, 0.6, 0.0)
 
 
 def held_back(bench: Bench) -> None:
-    bench.backend.devices.tether.read = lambda: TetherReading(bench.backend.clock.now_s, 5.0, 6.0)
+    bench.backend.devices[TETHER].read = lambda: TetherReading(bench.backend.clock.now_s, 5.0, 6.0)
 
 
 def believed_at(y_m: float, heading_rad: float = 0.0) -> Setup:
@@ -270,7 +272,7 @@ def test_a_leaf_ends_for_the_reason_it_declares(
     bench.recorder.close()
     assert outcome.reason is reason
     assert bench.trace.entered == {}
-    assert not bench.backend.devices.tracks.read().moving
+    assert not bench.backend.devices[DRIVE].read().moving
 
 
 def test_every_declared_outcome_of_every_leaf_has_its_case() -> None:

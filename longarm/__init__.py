@@ -1,0 +1,150 @@
+"""What authors of plug-ins write against (docs/plugins.md). It is stable; deeper imports are private.
+
+Control nodes and decorators, devices and signals join here.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from executive.config.backends import BackendRequest, BackendSpec
+from executive.config.file_kinds import FileKind
+from executive.config.localizers import LocalizerRequest, LocalizerSpec
+from executive.config.reporter import Reporter
+from executive.core.errors import Breach, ConfigError, LongarmError, PluginError
+from executive.core.ports import Action, Backend, Devices, LocaliseRequest, Localizer
+from executive.core.registry import Kind
+from executive.core.types import (
+    CameraView,
+    Localisation,
+    Outcome,
+    Point,
+    PoseEstimate,
+    PoseSource,
+    Quality,
+    Reason,
+    Segment,
+)
+from executive.core.values import (
+    ANGLE,
+    DURATION,
+    FLAG,
+    FORCE,
+    INTEGER,
+    LENGTH,
+    NUMBER,
+    POINT,
+    POSE,
+    QUALITY,
+    ROUTE,
+    SEGMENT,
+    SPEED,
+    TEXT,
+    ValueType,
+)
+from executive.isc import Categorical, Channel, Comparison, Concern, Gaussian, Hypothesis, Measured
+from executive.pool import Decision, Memory, Option, Policy, Situation, Strategy
+from executive.run.fault import Cue, Fault, FaultSpec
+from executive.run.instrument import Context, Instrument, InstrumentSpec, Judgement, Records, TreeParts
+from executive.tree.nodes.action import ActionLeaf
+from executive.tree.nodes.base import FromTree, In, InOut, Leaf, Out
+
+if TYPE_CHECKING:
+    from executive.testing import Bench as Bench
+    from executive.testing import Ended as Ended
+    from executive.testing import check_backend as check_backend
+    from executive.testing import check_channel as check_channel
+    from executive.testing import check_fault as check_fault
+    from executive.testing import check_hypothesis as check_hypothesis
+    from executive.testing import check_leaf as check_leaf
+    from executive.testing import check_localizer as check_localizer
+    from executive.testing import check_strategy as check_strategy
+
+__all__ = [
+    "ANGLE",
+    "DURATION",
+    "FLAG",
+    "FORCE",
+    "INTEGER",
+    "LENGTH",
+    "NUMBER",
+    "POINT",
+    "POSE",
+    "QUALITY",
+    "ROUTE",
+    "SEGMENT",
+    "SPEED",
+    "TEXT",
+    "Action",
+    "ActionLeaf",
+    "Backend",
+    "BackendRequest",
+    "BackendSpec",
+    "Bench",
+    "Breach",
+    "CameraView",
+    "Categorical",
+    "Channel",
+    "Comparison",
+    "Concern",
+    "ConfigError",
+    "Context",
+    "Cue",
+    "Decision",
+    "Devices",
+    "Ended",
+    "Fault",
+    "FaultSpec",
+    "FileKind",
+    "FromTree",
+    "Gaussian",
+    "Hypothesis",
+    "In",
+    "InOut",
+    "Instrument",
+    "InstrumentSpec",
+    "Judgement",
+    "Kind",
+    "Leaf",
+    "Localisation",
+    "LocaliseRequest",
+    "Localizer",
+    "LocalizerRequest",
+    "LocalizerSpec",
+    "LongarmError",
+    "Measured",
+    "Memory",
+    "Option",
+    "Out",
+    "Outcome",
+    "PluginError",
+    "Point",
+    "Policy",
+    "PoseEstimate",
+    "PoseSource",
+    "Quality",
+    "Reason",
+    "Records",
+    "Reporter",
+    "Segment",
+    "Situation",
+    "Strategy",
+    "TreeParts",
+    "ValueType",
+    "check_backend",
+    "check_channel",
+    "check_fault",
+    "check_hypothesis",
+    "check_leaf",
+    "check_localizer",
+    "check_strategy",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """The bench and the checkers, imported when asked for: a plug-in in use needs neither."""
+    if name not in __all__:
+        raise AttributeError(f"module 'longarm' has no attribute {name!r}")
+    from executive import testing
+
+    return getattr(testing, name)

@@ -1,0 +1,90 @@
+"""One of every kind from outside, known to every command: by entry points, module and project file."""
+
+import json
+
+import pytest
+
+from executive.cli import invoke
+from executive.core import registry
+from tests.system.plugins.conftest import ADDED
+
+
+def said(capsys, *arguments):
+    """What a command that succeeds prints."""
+    assert invoke(list(arguments)) == 0
+    return capsys.readouterr().out
+
+
+@pytest.fixture
+def outside(bring_in, way):
+    """The working folder of a user who has the stranger's plug-in."""
+    return bring_in(way)
+
+
+def test_every_kind_that_exists_is_added():
+    assert set(registry.kind_names()) == set(ADDED)
+
+
+@pytest.mark.parametrize("kind", ADDED)
+def test_the_catalogue_lists_what_was_added(outside, way, kind, capsys):
+    listed = json.loads(said(capsys, kind.replace("_", "-"), "--json"))
+    assert ADDED[kind][0] in listed
+
+
+def test_the_sources_are_listed_with_what_they_add(outside, way, capsys):
+    listed = json.loads(said(capsys, "plugins", "--json"))
+    source = "longarm.yaml: stranger.py" if way == "project" else "stranger"
+    if way == "module":
+        source = "entry point longarm.plugins: stranger = stranger"
+    assert listed[source]["leaves"] == ["weigh_sample"]
+    assert listed[source]["value_types"] == ["mass"]
+    assert "weigh_sample" not in listed["longarm"]["leaves"]
+
+
+def test_a_leaf_is_among_the_nodes_with_its_ports(outside, capsys):
+    node = json.loads(said(capsys, "nodes", "weigh_sample", "--json"))["weigh_sample"]
+    assert [port["type"] for port in node["ports"]] == ["length", "mass"]
+
+
+def test_files_that_use_it_are_checked(outside, capsys):
+    said(capsys, "check", "outside.yaml", "weigh.yaml")
+    tree = outside / "weigh.yaml"
+    tree.write_text(tree.read_text().replace("40 mm", "40 kg"))
+    assert invoke(["check", "weigh.yaml"]) == 1
+    assert "weigh.yaml:6:29:" in capsys.readouterr().out
+
+
+def test_it_is_drawn_and_in_the_schemas(outside, capsys):
+    assert "weigh_sample" in said(capsys, "show", "weigh.yaml")
+    assert "weigh_sample" in said(capsys, "schema", "tree")
+    assert '"hum"' in said(capsys, "schema", "scenario")
+    assert "recipe" in said(capsys, "schema", "recipe")
+
+
+def test_a_mission_runs_on_it_and_is_told_of(outside, capsys):
+    assert invoke(["run", "outside.yaml", "--out", "out", "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert [fault["fired"] for fault in result["faults"]] == [True]
+    assert "weigh" in said(capsys, "explain", "out")
+    assert "weigh_sample" in said(capsys, "show", "out")
+
+
+def test_its_files_reports_and_commands_work(outside, capsys):
+    (outside / "soup.yaml").write_text("recipe: 3\n")
+    assert invoke(["check", "soup.yaml"]) == 1
+    assert "soup.yaml:1:9: got no name" in capsys.readouterr().out
+    (outside / "folder").mkdir()
+    (outside / "folder" / "recipe.json").write_text('"soup"')
+    assert said(capsys, "report", "folder") == "folder/report.html\n"
+    assert said(capsys, "greet") == "hello from outside\n"
+
+
+def test_a_run_is_replayed_from_another_folder(outside, way, monkeypatch, tmp_path, capfd):
+    assert invoke(["run", "outside.yaml", "--out", "out", "--quiet"]) == 0
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (outside / "out").rename(elsewhere / "out")
+    monkeypatch.chdir(elsewhere)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "site"))
+    assert invoke(["replay", "out"]) == 0, capfd.readouterr()
+    assert "identical" in capfd.readouterr().out
