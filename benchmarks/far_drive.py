@@ -26,7 +26,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from executive.core.rig import RigCalibration
-from executive.core.types import PoseEstimate, Source
+from executive.core.types import PoseEstimate, PoseSource
 from executive.record.events import Telemetry, TruthEvent
 from executive.record.history import At, History
 from executive.record.result import vision_fixes
@@ -98,7 +98,7 @@ def judged(seed: int, result: dict, folder: Path) -> Drive:
     moving = [at for at in record.all(Telemetry) if at.event.moving]
     first_fix_s = fixes[0].time_s if fixes else np.inf
     under_way = [_nearest(samples, at.time_s) for at in moving if at.time_s > first_fix_s]
-    tendencies = [at.event for at in record.all(PoseEstimate) if at.event.source is Source.TREND]
+    tendencies = [at.event for at in record.all(PoseEstimate) if at.event.source == PoseSource.TREND]
     return Drive(
         seed=seed,
         outcome=result["outcome"],

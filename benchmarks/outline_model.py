@@ -19,9 +19,9 @@ import numpy as np
 
 from executive.core.types import HeadReading, Shot
 from perception.geometry.pose import roll_pitch
-from perception.markers.choice import Choice
-from perception.markers.look import look_at
+from perception.markers.marker_fix import MarkerFix
 from perception.markers.plausibility import choose
+from perception.markers.single import find_candidates
 from sim_pybullet.geometric import CentreDeveloper
 from sim_pybullet.leds import MarkerOptics
 from sim_pybullet.radiometry import Exposure, calibrated_light
@@ -78,14 +78,14 @@ def cheap(range_m: float, rng: np.random.Generator) -> Trial:
     centres = developer.develop(Shot((0,) * FRAMES, s.windows), (s.scene,) * FRAMES, head, 0.0)
     if not np.isfinite(centres.uv_px).all():
         return Trial(None, None, 0.0, "no outline")
-    candidates = look_at(RIG, centres, range_m).candidates
+    candidates = find_candidates(RIG, centres, range_m).candidates
     tilt_rad = (float(a) for a in roll_pitch(state.site_body.rotation)[0])
     found = choose(
         s.chain, candidates, state.head_rad, state.joints_rad, tuple(tilt_rad), s.expectation.prior
     )
-    if not isinstance(found, Choice):
+    if not isinstance(found, MarkerFix):
         return Trial(None, None, 0.0, found.why)
-    return judged(s, found.fix.state.site_body, found.fix.covariance, 0.0)
+    return judged(s, found.fit.state.site_body, found.fit.covariance, 0.0)
 
 
 TIERS = {"full": run_trial, "geometric": cheap}

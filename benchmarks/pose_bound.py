@@ -16,7 +16,7 @@ from scipy.stats import chi2
 
 from executive.core.clock import Stopwatch
 from executive.core.rig import CabinCalibration, HeadCalibration, RigCalibration
-from perception.frames.exposure import filter_snr_per_pair, pairs_needed, view_of
+from perception.frames.exposure import filter_snr_per_pair, pairs_needed, plate_view
 from perception.geometry.body import Transform, points_in_body
 from perception.geometry.camera import triangulate
 from perception.geometry.pose import (
@@ -44,7 +44,7 @@ def bound_table(trials: int) -> None:
     for name, rig in (("exact", EXACT_RIG), ("real", RigCalibration())):
         for range_m in RANGES_M:
             true = scene(range_m, rig=rig)
-            pairs = int(pairs_needed(filter_snr_per_pair(rig, view_of(true.chain, true.state))))
+            pairs = int(pairs_needed(filter_snr_per_pair(rig, plate_view(true.chain, true.state))))
             draws = np.random.default_rng([20, int(10 * range_m), int(name == "real")])  # rows of their own
             got = run(true, pairs, trials, draws)
             position = np.sqrt((got.errors[:, :3] ** 2).sum(axis=1).mean())

@@ -21,9 +21,9 @@ from executive.core.types import (
     Outcome,
     Point,
     PoseEstimate,
+    PoseSource,
     Quality,
     Segment,
-    Source,
 )
 from executive.isc.attitude import quat_from_heading_tilt
 from perception.localizer.localizer import LedStereoLocalizer
@@ -57,7 +57,7 @@ def errors(range_m: float, tier: str, fixes: int) -> tuple[np.ndarray, np.ndarra
         (range_m, 0.0, 0.0),
         quat_from_heading_tilt(np.radians(30.0), 0.0, 0.0),
         np.diag([0.02**2, 0.02**2, 0.05**2, 0.05**2, 0.05**2, 0.1**2]),
-        Source.PRIOR,
+        PoseSource.PRIOR,
     )
     found, nees = [], []
     for _ in range(fixes):
@@ -66,10 +66,11 @@ def errors(range_m: float, tier: str, fixes: int) -> tuple[np.ndarray, np.ndarra
         if not outcome.ok:
             continue
         truth = backend.world.scene().T_site_body
-        turned = Rotation.from_matrix(truth[:3, :3]) * Rotation.from_quat(outcome.value.quat_site_body).inv()
-        error = np.r_[truth[:3, 3] - outcome.value.position_site_m, turned.as_rotvec()]
+        pose = outcome.value.pose
+        turned = Rotation.from_matrix(truth[:3, :3]) * Rotation.from_quat(pose.quat_site_body).inv()
+        error = np.r_[truth[:3, 3] - pose.position_site_m, turned.as_rotvec()]
         found.append(error)
-        nees.append(error @ np.linalg.solve(outcome.value.covariance, error))
+        nees.append(error @ np.linalg.solve(pose.covariance, error))
     backend.close()
     return np.array(found), np.array(nees)
 

@@ -9,12 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 from executive.config.backends import BackendRequest, BackendSpec
 from executive.config.file_kinds import FileKind
+from executive.config.localizers import LocalizerRequest, LocalizerSpec
 from executive.config.reporter import Reporter
 from executive.core.device_spec import DeviceSpec, Quantity, Verb
 from executive.core.errors import Breach, ConfigError, LongarmError, PluginError
 from executive.core.ports import Action, Backend, Devices, LocaliseRequest, Localizer
 from executive.core.registry import Kind
-from executive.core.types import Outcome, Point, PoseEstimate, Quality, Reason, Segment
+from executive.core.types import (
+    CameraView,
+    Localisation,
+    Outcome,
+    Point,
+    PoseEstimate,
+    PoseSource,
+    Quality,
+    Reason,
+    Segment,
+)
 from executive.core.values import (
     ANGLE,
     DURATION,
@@ -72,6 +83,7 @@ __all__ = [
     "BackendSpec",
     "Bench",
     "Breach",
+    "CameraView",
     "Categorical",
     "Channel",
     "Comparison",
@@ -96,8 +108,11 @@ __all__ = [
     "Judgement",
     "Kind",
     "Leaf",
+    "Localisation",
     "LocaliseRequest",
     "Localizer",
+    "LocalizerRequest",
+    "LocalizerSpec",
     "LongarmError",
     "Measured",
     "Memory",
@@ -108,6 +123,7 @@ __all__ = [
     "Point",
     "Policy",
     "PoseEstimate",
+    "PoseSource",
     "Quality",
     "Quantity",
     "Reason",

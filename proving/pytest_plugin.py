@@ -24,9 +24,7 @@ class ScenarioNotGood(Exception):
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("longarm", "scenario files as tests")
-    group.addoption(
-        "--longarm-tier", choices=["full", "geometric"], help="Replace the tier of every scenario."
-    )
+    group.addoption("--longarm-tier", help="Replace the tier of every scenario.")
     group.addoption("--longarm-seed", type=int, help="Replace every seed.")
     group.addoption("--longarm-out", default="runs/pytest", help="Where the run folders go.")
     parser.addini("longarm_scenarios", "Folders whose scenarios are collected.", type="paths", default=[])

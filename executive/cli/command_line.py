@@ -81,9 +81,7 @@ FILE = click.Path(path_type=Path)
 @click.argument("file", type=FILE)
 @click.option("--seed", type=int, help="Replace the scenario's seed.")
 @click.option("--out", type=FILE, help="Where to write the run folder.")
-@click.option(
-    "--tier", type=click.Choice(["full", "geometric"]), help="Images, or their measured error model."
-)
+@click.option("--tier", help="Replace the scenario's tier: one that its backend has.")
 @click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Replace one value of the scenario."
 )
@@ -118,6 +116,20 @@ def run(
         where = finished.folder / "traceback.txt"
         click.echo(f"longarm: a defect: {finished.result.reason} ({where})", err=True)
     return finished.exit_code
+
+
+@cli.command()
+def prepare() -> int:
+    """Make what is made once on a machine, such as machine code; done already, it takes a second.
+
+    Example: longarm prepare
+    """
+    from executive.config.localizers import LOCALIZER_KIND
+    from executive.core import registry
+
+    for spec in registry.every(LOCALIZER_KIND).values():
+        spec.prepare(lambda line: click.echo(line, err=True))
+    return 0
 
 
 @cli.command()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -11,6 +11,7 @@ from executive.config.validate import Strict
 from executive.core.types import Point, Segment
 from executive.core.units import Duration, Length
 
+DEFAULT_LOCALIZER = "led_stereo"
 Name = Annotated[str, Field(min_length=1, max_length=100)]
 Margin = Annotated[Length, Field(gt=0)]
 
@@ -63,7 +64,8 @@ class MissionFile(Strict):
 
 
 class ScenarioFile(Strict):
-    """A mission, a world and a seed. `world` and `rig` are read further on; instruments own further keys.
+    """A mission, a world and a seed. `localizer`, `world` and `rig` are read further on; instruments own
+    further keys. Without a `tier`, the backend's first is meant.
 
     `project` names the project file where it is not that beside the scenario or above it.
     """
@@ -73,9 +75,9 @@ class ScenarioFile(Strict):
     project: Annotated[str, Field(min_length=1)] | None = None
     mission: MissionFile
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    tier: Literal["full", "geometric"] = "full"
+    tier: Name | None = None
     backend: Name = "pybullet"
-    localizer: Name = "led_stereo"
+    localizer: Any = DEFAULT_LOCALIZER
     policy: Annotated[
         Name | None, Field(description="how the pool chooses among strategies (default first_fitted)")
     ] = None

@@ -19,6 +19,7 @@ from executive.core.types import (
     Centres,
     HeadReading,
     Images,
+    Localisation,
     Outcome,
     PoseEstimate,
     Quality,
@@ -28,7 +29,6 @@ from executive.core.types import (
     TiltReading,
     TrackReading,
     Vec2,
-    View,
 )
 
 T = TypeVar("T")
@@ -208,17 +208,13 @@ class LocaliseRequest:
 
 
 class Localizer(Protocol):
-    """Finds the rover with head and cameras, and says where the head should look.
+    """Finds the rover with head and cameras, and says where the head should look."""
 
-    A class may have a static `preload()`: campaigns call it once before they fork a process for each case.
-    """
+    def locate(self, request: LocaliseRequest) -> Action[Localisation]:
+        """Measure. Ends DONE with a pose, or with a reason that the classification can use: no guess.
 
-    def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
-        """Measure; fails with a reason the classification can use, never with a guess."""
-        ...
-
-    def views(self) -> tuple[View, ...]:
-        """What the last localisation looked at, left and right; empty where there are no images."""
+        A failure carries what was looked at all the same, and a pose that was measured but not believed.
+        """
         ...
 
     def pointing(self, pose: PoseEstimate) -> Vec2:

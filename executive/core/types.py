@@ -68,14 +68,12 @@ class Quality(StrEnum):
     FAR = "far"  # long averaging, at rest
 
 
-class Source(StrEnum):
-    """Where a pose estimate comes from."""
+class PoseSource(StrEnum):
+    """Where a pose estimate comes from that is no fix; a fix bears a name of its localizer's own."""
 
     PRIOR = "prior"
     PREDICTION = "prediction"
     TREND = "trend"
-    MARKERS = "markers"
-    PASSIVE = "passive"  # outlines, where no marker shows
 
 
 def frozen_array(values: object, shape: tuple[int, ...]) -> Array:
@@ -141,20 +139,25 @@ class TrackOffset:
 class PoseEstimate:
     """Pose of `body` in `site` at `time_s`, with its 6x6 covariance (position m, rotation rad).
 
-    `track` is the offset from the segment under way, None where there is none.
-    `markers` counts the markers a vision fix rests on (0 for a prediction).
+    `source` is a `PoseSource`, or the name that a localizer gives to its fixes. `track` is the offset from
+    the segment under way, None where there is none. `markers` counts the markers that a fix rests on.
     """
 
     time_s: float
     position_site_m: Vec3
     quat_site_body: Quat
     covariance: Array
-    source: Source
+    source: str
     track: TrackOffset | None = None
     markers: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "covariance", frozen_array(self.covariance, (6, 6)))
+
+    @property
+    def is_fix(self) -> bool:
+        """Whether a localizer measured it, with the rover at rest."""
+        return self.source not in tuple(PoseSource)
 
     @property
     def x_m(self) -> float:
@@ -321,7 +324,7 @@ class Centres:
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class CameraView:
     """What one camera showed at a localisation, for people: a patch of the frame and what was found in it.
 
     `counts` has shape (height, width) and is the part `window` of the full frame. Centres are in pixels of
@@ -332,6 +335,15 @@ class View:
     counts: NDArray[np.float32]
     detected_px: Array
     reprojected_px: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Localisation:
+    """What a localisation found and what it looked at: the pose, None where there is none to tell of, and a
+    view of each camera, left and right; no views where there are no images."""
+
+    pose: PoseEstimate | None
+    views: tuple[CameraView, ...] = ()
 
 
 @dataclass(frozen=True)

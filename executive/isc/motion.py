@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from executive.core.types import Array, PoseEstimate, Source, frozen_array
+from executive.core.types import Array, PoseEstimate, PoseSource, frozen_array
 from executive.isc.attitude import quat_from_heading_tilt
 
 X, Y, HEADING, ADVANCE, YAW_EFFICIENCY, DRIFT = range(6)
@@ -50,7 +50,7 @@ class MotionState:
     height_sigma_m: float
     roll_rad: float = 0.0
     pitch_rad: float = 0.0
-    source: Source = Source.PRIOR
+    source: str = PoseSource.PRIOR
 
     @property
     def advance(self) -> float:

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from executive.core.types import Source, TiltReading, frozen_array
+from executive.core.types import PoseSource, TiltReading, frozen_array
 from executive.isc.attitude import wrap_rad
 from executive.isc.motion import ADVANCE, DRIFT, HEADING, YAW_EFFICIENCY, MotionNoise, MotionState, X, Y
 
@@ -55,7 +55,7 @@ def predict(
         mean=frozen_array(mean, (6,)),
         covariance=frozen_array(covariance, (6, 6)),
         height_sigma_m=math.hypot(state.height_sigma_m, noise.climb_per_m * abs(forward)),
-        source=Source.PREDICTION,
+        source=PoseSource.PREDICTION,
     )
 
 

@@ -7,7 +7,7 @@ import math
 from executive.core.clock import Clock
 from executive.core.ports import Devices
 from executive.core.rig import Rig
-from executive.core.types import PoseEstimate, Source
+from executive.core.types import PoseEstimate, PoseSource
 from executive.isc import correction, prediction
 from executive.isc.comparison import SinceFix
 from executive.isc.gate import Reach, unusable
@@ -61,7 +61,7 @@ class Tracker:
 
     def take_in(self, fix: PoseEstimate, explained: bool) -> None:
         """Learn from a fix that the model explains, or start from one that it does not."""
-        if explained or self.motion.source is Source.PRIOR:
+        if explained or self.motion.source == PoseSource.PRIOR:
             self.motion = correction.correct(self.motion, fix, self._noise)
         else:
             self.motion = correction.reset_pose(self.motion, fix)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from executive.core.types import PoseEstimate, Segment, Source
+from executive.core.types import PoseEstimate, PoseSource, Segment
 from executive.record.events import SegmentEvent, WaypointEvent
 
 
@@ -20,7 +20,7 @@ class AlongRoute:
         """Take an event into account."""
         if isinstance(event, SegmentEvent):
             self._segment = event.segment
-        elif isinstance(event, PoseEstimate) and event.source is not Source.PREDICTION:
+        elif isinstance(event, PoseEstimate) and event.source != PoseSource.PREDICTION:
             self._pose = event
         elif isinstance(event, WaypointEvent):
             self.reached = max(self.reached, event.index + 1)

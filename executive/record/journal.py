@@ -7,11 +7,11 @@ from collections import Counter
 from executive.core.ports import Devices
 from executive.core.types import (
     Call,
+    CameraView,
     Images,
     Outcome,
     PoseEstimate,
     Segment,
-    View,
 )
 from executive.isc import Assessment, Sensed
 from executive.pool import Attempt, Choice
@@ -64,7 +64,7 @@ class RunJournal:
     def assessment(self, assessment: Assessment) -> None:
         self.write(events.HypothesesEvent(dict(assessment.weights), assessment.time_to_margin_s))
 
-    def views(self, views: tuple[View, ...], outcome: Outcome[object]) -> None:
+    def views(self, views: tuple[CameraView, ...], outcome: Outcome[object]) -> None:
         """Keep every fifth look, and each that failed."""
         self._looks += 1
         if outcome.ok and self._looks % KEEP_EVERY != 1:

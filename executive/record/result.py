@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from executive.core.types import PoseEstimate, Reason, Source
+from executive.core.types import PoseEstimate, Reason
 from executive.record.digest import digest
 from executive.record.events import (
     NodeChange,
@@ -39,7 +39,6 @@ from executive.record.truth import (
 
 NO_STOP = "the record ends without a stop"
 VISION_REASONS = frozenset({Reason.NOT_SEEN, Reason.POOR_VIEW, Reason.UNSTABLE_IMAGES, Reason.IMPLAUSIBLE})
-_FIXES = frozenset({Source.MARKERS, Source.PASSIVE})
 
 
 @dataclass(frozen=True)
@@ -130,7 +129,7 @@ def pose_errors(history: History, track: Track) -> list[PoseError]:
 
 def vision_fixes(history: History) -> list[PoseEstimate]:
     """The precise localisations, in order of time."""
-    return [at.event for at in history.all(PoseEstimate) if at.event.source in _FIXES]
+    return [at.event for at in history.all(PoseEstimate) if at.event.is_fix]
 
 
 def _localisation(history: History, track: Track | None) -> Localisations:

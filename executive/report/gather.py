@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from executive.core.errors import RecordError
-from executive.core.types import PoseEstimate, Segment, Source
+from executive.core.types import PoseEstimate, PoseSource, Segment
 from executive.record import History, RunResult, read_result, summarise
 from executive.record.events import RouteEvent, SegmentEvent, Start
 from executive.record.result import vision_fixes
@@ -45,7 +45,7 @@ class Run:
     def estimates(self) -> list[PoseEstimate]:
         """What the executive believed, in order of time; a motion tendency is only watched."""
         every = (at.event for at in self.history.all(PoseEstimate))
-        return [p for p in every if p.source is not Source.TREND and np.isfinite(p.position_site_m).all()]
+        return [p for p in every if p.source != PoseSource.TREND and np.isfinite(p.position_site_m).all()]
 
     @cached_property
     def errors(self) -> list[PoseError] | None:

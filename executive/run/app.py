@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from executive.config.backends import BackendRequest
-from executive.config.localizer_kind import LOCALIZER_KIND
 from executive.config.reporter import REPORTER_KIND
 from executive.core import registry
 from executive.core.clock import Stopwatch
@@ -75,7 +76,7 @@ def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
 
 def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     strategies = load_strategies()
-    localizer = registry.get(LOCALIZER_KIND, scenario.file.localizer)
+    scenario.localizer.spec.prepare(partial(print, file=sys.stderr, flush=True) if options.bar else _silent)
     watch = Stopwatch()
     folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
@@ -85,7 +86,7 @@ def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     (folder / "scenario.yaml").write_text(scenario.dump())  # first, so that a run cut off can be repeated
     try:
         with one_thread():
-            end = _execute(scenario, strategies, localizer, folder, watch, options.bar)
+            end = _execute(scenario, strategies, folder, watch, options.bar)
     except LongarmError:
         unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
         raise
@@ -96,6 +97,10 @@ def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     except Exception as defect:
         write_traceback(folder, defect)
         raise
+
+
+def _silent(line: str) -> None:
+    """Where nobody looks on."""
 
 
 def report(folder: Path) -> Path:
@@ -111,7 +116,6 @@ def report(folder: Path) -> Path:
 def _execute(
     scenario: ResolvedScenario,
     strategies: tuple[Strategy, ...],
-    localizer: object,
     folder: Path,
     watch: Stopwatch,
     bar: bool,
@@ -130,7 +134,7 @@ def _execute(
         write_start(recorder, scenario)
         with progress_bar(scenario.name, route, bar) as listeners:
             try:
-                prepared = set_up(scenario, strategies, localizer, request, recorder, watch, listeners)
+                prepared = set_up(scenario, strategies, request, recorder, watch, listeners)
             except LongarmError:
                 raise
             except Exception as defect:  # a plug-in that cannot even be made

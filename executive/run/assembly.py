@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 from executive.config.backends import BackendRequest
 from executive.core.clock import Stopwatch
 from executive.core.devices import DRIVE
-from executive.core.errors import PluginError
-from executive.core.ports import Backend, Devices, Localizer
-from executive.core.rig import Rig
+from executive.core.ports import Backend
 from executive.core.types import (
     Outcome,
     PoseEstimate,
+    PoseSource,
     Reason,
     Segment,
-    Source,
 )
 from executive.isc import Classification, known_channels, known_hypotheses
 from executive.isc.attitude import quat_from_heading_tilt
@@ -52,7 +49,7 @@ def prior_pose(first: Segment) -> PoseEstimate:
         position_site_m=(first.start.x_m, first.start.y_m, 0.0),
         quat_site_body=quat_from_heading_tilt(heading, 0.0, 0.0),
         covariance=np.diag([0.05**2, 0.05**2, 0.20**2, 0.1**2, 0.1**2, 0.6**2]),
-        source=Source.PRIOR,
+        source=PoseSource.PRIOR,
     )
 
 
@@ -66,7 +63,6 @@ def write_start(recorder: Recorder, scenario: ResolvedScenario) -> None:
 def set_up(
     scenario: ResolvedScenario,
     strategies: tuple[Strategy, ...],
-    localizer: object,
     request: BackendRequest,
     recorder: Recorder,
     watch: Stopwatch,
@@ -76,7 +72,7 @@ def set_up(
     with watch.measure("setup"):
         backend = scenario.backend.create(request)
     try:
-        return _prepare(scenario, strategies, localizer, backend, recorder, watch, listeners)
+        return _prepare(scenario, strategies, backend, recorder, watch, listeners)
     except BaseException:
         backend.safe_stop()
         backend.close()
@@ -86,7 +82,6 @@ def set_up(
 def _prepare(
     scenario: ResolvedScenario,
     strategies: tuple[Strategy, ...],
-    make_localizer: object,
     backend: Backend,
     recorder: Recorder,
     watch: Stopwatch,
@@ -105,11 +100,12 @@ def _prepare(
     devices = devices.replace(DRIVE, belts)
     trees = strategy_trees(strategies, scenario.instead)
     not_for_this_robot = unfit(trees, scenario.backend)
+    localizer = scenario.localizer.made(devices, backend.rig, backend.clock, scenario.seed, scenario.tier)
     services = Services(
         clock=backend.clock,
         devices=devices,
         rig=backend.rig,
-        localizer=instruments.wrap_localizer(_localizer(make_localizer, devices, backend)),
+        localizer=instruments.wrap_localizer(localizer),
         classification=Classification(
             prior_pose(route[0]),
             backend.rig,
@@ -117,7 +113,7 @@ def _prepare(
             known_hypotheses(devices.names),
             known_channels(devices.names),
             announce=journal.assessment,
-            markers_expected=_markers_expected(make_localizer, backend.rig),
+            markers_expected=scenario.localizer.spec.expected_markers(backend.rig),
         ),
         pool=Pool(strategies, journal.strategy, known_policy(scenario.policy), not_for_this_robot),
         journal=journal,
@@ -148,16 +144,3 @@ def _prepare(
         each_tick=each_tick,
         invalid=instruments.conclude,
     )
-
-
-def _localizer(make: object, devices: Devices, backend: Backend) -> Localizer:
-    if not callable(make):
-        raise PluginError(f"got a localizer {make!r}, expected something to call")
-    made: Localizer = make(devices=devices, rig=backend.rig, clock=backend.clock)
-    return made
-
-
-def _markers_expected(localizer: object, rig: Rig) -> int:
-    """How many markers of this rig a localizer looks for; 0 where it does not say that it uses any."""
-    expected: Callable[[Any], int] = getattr(localizer, "expected_markers", lambda rig: 0)
-    return expected(rig)

@@ -72,10 +72,10 @@ class Instrument:
 
 @dataclass(frozen=True)
 class Setting:
-    """Where a scenario takes place: which backend in which tier, along how many way-points."""
+    """Where a scenario takes place: backend, tier (None: unknown), number of way-points."""
 
     backend: str
-    tier: str
+    tier: str | None
     waypoints: int
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from executive.config.backends import BACKEND_KIND, BackendSpec
 from executive.config.distributions import drawn
 from executive.config.find import find, portable, shown
-from executive.config.localizer_kind import LOCALIZER_KIND
+from executive.config.localizers import ChosenLocalizer, localizer_from
 from executive.config.mission import mission_problems
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.overrides import override
@@ -20,6 +20,7 @@ from executive.config.registered import registered
 from executive.config.rig_overrides import rig_from
 from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
+from executive.config.validate import shown as shown_data
 from executive.core.chance import generator
 from executive.core.errors import ConfigError, Problem
 from executive.core.registry import Project, in_project
@@ -29,7 +30,7 @@ from executive.run.instruments import broken_instruments, instruments_there_are
 from executive.run.resolved import ResolvedScenario
 from executive.tree.literals import literal
 from executive.tree.load import load_tree
-from executive.tree.needs import missing
+from executive.tree.needs import devices_of, missing
 from executive.tree.spec import TreeSpec
 
 
@@ -78,37 +79,44 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
         problems.found += [source.at(()).problem(str(each)) for each in broken_instruments()]
     backend_name = _text(source, "backend", str(ScenarioFile.model_fields["backend"].default))
     backend = problems.attempt(_backend, source, backend_name)
-    problems.attempt(_check_localizer, source)
+    tier = problems.attempt(_tier, source, backend) if backend else None
+    localizer = problems.attempt(localizer_from, source, tier)
     problems.attempt(_check_policy, source)
     world = problems.attempt(_world, source, backend) if backend else None
     rig = problems.attempt(rig_from, source, ("rig",), backend.rig) if backend else None
-    settings = _settings(source, instruments, _setting(source, backend_name), problems)
+    settings = _settings(source, instruments, _setting(source, backend_name, tier), problems)
     tree_path = problems.attempt(_tree_path, source)
     tree = problems.attempt(load_tree, tree_path) if tree_path else None
     inputs = problems.attempt(_inputs, source, tree) if tree else None
     for spec in instruments:
         problems.found.extend(spec.check(source.only(spec.keys), settings, tree))
+    if localizer is not None and backend is not None:
+        problems.found.extend(_unfit(source, localizer, backend))
     if tree is not None and backend is not None:
         problems.found.extend(missing(tree, backend))
     if file is not None:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
-        if backend is not None:
-            problems.attempt(_check_tier, source, file.tier, backend)
         if backend is not None and world is not None and not impossible:
             problems.found.extend(_world_problems(source, backend, world, file.mission))
     problems.check()
-    if file is None or backend is None or world is None or rig is None or tree is None or tree_path is None:
+    if tree is None or tree_path is None:
         raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
+    assert file is not None  # noqa: S101  (else a problem was found)
+    assert backend is not None  # noqa: S101  (else a problem was found)
+    assert localizer is not None  # noqa: S101  (else a problem was found)
+    assert world is not None  # noqa: S101  (else a problem was found)
+    assert rig is not None  # noqa: S101  (else a problem was found)
     named = str(project.file) if project is not None else None
     mission = file.mission.model_copy(update={"tree": portable("trees", tree_path)})
     return ResolvedScenario(
-        file.model_copy(update={"mission": mission, "project": named, "world": {}, "rig": {}}),
+        file.model_copy(update={"mission": mission, "project": named, "tier": tier, "world": {}, "rig": {}}),
         world,
         rig,
         settings,
         tree,
         backend,
+        localizer,
         project,
         inputs or {},
     )
@@ -156,17 +164,23 @@ def _text(source: Source, key: str, default: str) -> str:
     return value if isinstance(value, str) else default
 
 
-def _setting(source: Source, backend: str) -> Setting:
+def _setting(source: Source, backend: str, tier: str | None) -> Setting:
     """What instruments must fit, as far as the file says it; what is wrong with that is told elsewhere."""
     mission = source.data.get("mission") if isinstance(source.data, dict) else None
     points = mission.get("waypoints") if isinstance(mission, dict) else None
-    tier = _text(source, "tier", str(ScenarioFile.model_fields["tier"].default))
     return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
 
 
-def _check_localizer(source: Source) -> None:
-    default = str(ScenarioFile.model_fields["localizer"].default)
-    registered(LOCALIZER_KIND, _text(source, "localizer", default), source.at(("localizer",)))
+def _unfit(source: Source, localizer: ChosenLocalizer, backend: BackendSpec) -> Iterator[Problem]:
+    """What a localizer needs that the backend's robot is without."""
+    spec, mark = localizer.spec, source.at(("localizer",))
+    lacking = [name for name in spec.needs if name not in devices_of(backend)]
+    if lacking:
+        told = f"{spec.name} needs {', '.join(lacking)}, which the backend {backend.name} does not have"
+        yield mark.problem(told)
+    if not issubclass(backend.rig, spec.rig):
+        told = f"{spec.name} needs a {spec.rig.__name__}, the backend {backend.name} has a"
+        yield mark.problem(f"{told} {backend.rig.__name__}")
 
 
 def _check_policy(source: Source) -> None:
@@ -222,7 +236,14 @@ def _inputs(source: Source, tree: TreeSpec) -> dict[str, object]:
     return values
 
 
-def _check_tier(source: Source, tier: str, backend: BackendSpec) -> None:
-    if tier not in backend.tiers:
-        message = f'got "{tier}", expected a tier of {backend.name}: {listed(backend.tiers)}'
-        raise ConfigError([source.at(("tier",)).problem(message)])
+def _tier(source: Source, backend: BackendSpec) -> str | None:
+    """The tier that the file names, or else the backend's first; None where what it says is no name."""
+    said = source.data.get("tier") if isinstance(source.data, dict) else None
+    if said is None:
+        return backend.tiers[0]
+    if not isinstance(said, str):
+        return None  # told where the file as a whole is read
+    if said not in backend.tiers:
+        expected = f"a tier of {backend.name}: {listed(backend.tiers)}{guess(said, backend.tiers)}"
+        raise ConfigError([source.at(("tier",)).problem(f"got {shown_data(said)}, expected {expected}")])
+    return said

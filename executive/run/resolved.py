@@ -10,6 +10,7 @@ import yaml
 from pydantic import BaseModel
 
 from executive.config.backends import BackendSpec
+from executive.config.localizers import ChosenLocalizer
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.rig_overrides import rig_fields
 from executive.core.errors import ConfigError
@@ -37,6 +38,7 @@ class ResolvedScenario:
     """What each instrument has read of its keys, by the instrument's name."""
     tree: TreeSpec
     backend: BackendSpec
+    localizer: ChosenLocalizer
     project: Project | None
     """Whose plug-ins it uses."""
     inputs: Mapping[str, object]
@@ -58,7 +60,7 @@ class ResolvedScenario:
 
     @property
     def tier(self) -> str:
-        return self.file.tier
+        return self.file.tier or self.backend.tiers[0]
 
     @property
     def policy(self) -> str:
@@ -86,6 +88,7 @@ class ResolvedScenario:
     def dump(self) -> str:
         """YAML with every default written; resolves to an equal value, bit for bit."""
         data = self.file.model_dump(mode="json", by_alias=True, exclude_none=True)
+        data["localizer"] = self.localizer.entry()
         data["world"] = self.world.model_dump(mode="json", by_alias=True, exclude_none=True)
         data["rig"] = rig_fields(self.rig)
         time_limit = data.pop("time_limit")

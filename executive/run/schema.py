@@ -7,7 +7,8 @@ from enum import Enum
 from typing import Any
 
 from executive.config.file_kinds import file_kind, file_kinds
-from executive.config.models import MissionFile, ScenarioFile
+from executive.config.localizers import LOCALIZER_KIND
+from executive.config.models import DEFAULT_LOCALIZER, MissionFile, ScenarioFile
 from executive.config.project import ProjectFile
 from executive.core import registry
 from executive.core.values import VALUE_TYPE_KIND
@@ -46,9 +47,23 @@ def _scenario() -> dict[str, Any]:
     inline = copy.deepcopy(made["properties"]["mission"])
     name = {"type": "string", "description": "a mission file: a path or a bare name"}
     made["properties"]["mission"] = {"anyOf": [name, inline]}
+    made["properties"]["localizer"] = _localizer(made["$defs"])
     for spec in instruments_there_are():
         made["properties"] |= spec.schema(made["$defs"])
     return made
+
+
+def _localizer(shared: dict[str, Any]) -> dict[str, Any]:
+    """A name, or a name with settings."""
+    specs = registry.every(LOCALIZER_KIND)
+    settings: dict[str, Any] = {}
+    for name, spec in specs.items():
+        own = spec.settings.model_json_schema(by_alias=True)
+        shared.update(own.pop("$defs", {}))
+        settings[name] = {"anyOf": [own, {"type": "null"}], "description": spec.doc}
+    one = {"type": "object", "properties": settings, "additionalProperties": False}
+    names = {"enum": list(specs)}
+    return {"anyOf": [names, one | {"minProperties": 1, "maxProperties": 1}], "default": DEFAULT_LOCALIZER}
 
 
 def _tree() -> dict[str, Any]:

@@ -7,10 +7,11 @@ from executive.testing.check_fault import FaultBreach, check_fault
 from executive.testing.check_leaf import LeafBreach, check_leaf
 from executive.testing.check_localizer import LocalizerBreach, check_localizer
 from executive.testing.check_strategy import StrategyBreach, check_strategy
-from executive.testing.fake import BACKEND, FakeBackend, FakeWorld, OverheadLocalizer, fake_with
+from executive.testing.fake import BACKEND, OVERHEAD, FakeBackend, FakeWorld, OverheadLocalizer, fake_with
 
 __all__ = [
     "BACKEND",
+    "OVERHEAD",
     "BackendBreach",
     "Bench",
     "Ended",

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from executive.core.errors import Breach
-from executive.core.types import PoseEstimate, Reason, Source
+from executive.core.types import PoseEstimate, Reason
 from executive.isc import Channel, Comparison, Gaussian, Hypothesis, Innovation, Measured, SinceFix
 from executive.isc.attitude import quat_from_heading_tilt
 from executive.isc.kind import broken_by_channel, broken_by_hypothesis
@@ -42,7 +42,7 @@ def check_channel(channel: Channel, comparisons: Sequence[Comparison] = ()) -> N
 def samples() -> tuple[Comparison, ...]:
     """A fix where it was predicted after a turn and a drive, and a failure."""
     quat = quat_from_heading_tilt(0.1, 0.0, 0.0)
-    pose = PoseEstimate(100.0, (3.0, 0.0, 0.0), quat, np.eye(6) * 1e-6, Source.MARKERS, markers=4)
+    pose = PoseEstimate(100.0, (3.0, 0.0, 0.0), quat, np.eye(6) * 1e-6, "markers", markers=4)
     motion = start(pose, MotionNoise())
     as_predicted = Comparison(
         time_s=100.0,

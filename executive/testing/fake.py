@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from executive.config.backends import BackendRequest, BackendSpec
+from executive.config.localizers import LocalizerRequest, LocalizerSpec
 from executive.core.clock import Clock
 from executive.core.devices import CABIN, CAMERAS, HEAD, INCLINOMETER, LINK, TETHER, TRACKS
 from executive.core.ports import Action, Devices, LocaliseRequest
@@ -25,17 +26,17 @@ from executive.core.types import (
     Centres,
     HeadReading,
     Images,
+    Localisation,
     Outcome,
     PoseEstimate,
+    PoseSource,
     Quality,
     Reason,
     Shot,
-    Source,
     TetherReading,
     TiltReading,
     TrackReading,
     Vec2,
-    View,
 )
 from executive.isc.attitude import quat_from_heading_tilt
 
@@ -278,17 +279,9 @@ class OverheadLocalizer:
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
         self._devices, self._rig, self._clock = devices, rig, clock
 
-    @staticmethod
-    def expected_markers(rig: RigCalibration) -> int:
-        """All of them."""
-        return len(rig.markers.positions_plc_m)
-
-    def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
-        source = Source.TREND if request.quality is Quality.TREND else Source.MARKERS
+    def locate(self, request: LocaliseRequest) -> Action[Localisation]:
+        source = PoseSource.TREND if request.quality is Quality.TREND else OVERHEAD.sources[0]
         return _Located(self._devices[CAMERAS].take(Shot(leds=(0, 1, 2, 4, 8))), self._rig, source)
-
-    def views(self) -> tuple[View, ...]:
-        return ()
 
     def pointing(self, pose: PoseEstimate) -> Vec2:
         height = self._rig.head.mast_height_m
@@ -299,9 +292,15 @@ class OverheadLocalizer:
 class _Located:
     taking: Action[Images | Centres]
     rig: RigCalibration
-    source: Source
+    source: str
+    outcome: Outcome[Localisation] | None = None
 
-    def poll(self) -> Outcome[PoseEstimate] | None:
+    def poll(self) -> Outcome[Localisation] | None:
+        if self.outcome is None:
+            self.outcome = self._looked()
+        return self.outcome
+
+    def _looked(self) -> Outcome[Localisation] | None:
         outcome = self.taking.poll()
         if outcome is None:
             return None
@@ -309,7 +308,7 @@ class _Located:
             return Outcome(outcome.reason if not outcome.ok else Reason.DEVICE, "no centres")
         if not np.isfinite(outcome.value.uv_px).all():
             return Outcome(Reason.NOT_SEEN, "not every marker is seen")
-        return Outcome(Reason.DONE, value=self._fit(outcome.value))
+        return Outcome(Reason.DONE, value=Localisation(self._fit(outcome.value)))
 
     def cancel(self) -> None:
         self.taking.cancel()
@@ -347,6 +346,26 @@ BACKEND = BackendSpec(
     devices=ALL,
     rig=RigCalibration,
     create=FakeBackend,
+)
+
+
+def _overhead(request: LocalizerRequest) -> OverheadLocalizer:
+    return OverheadLocalizer(request.devices, request.rig, request.clock)
+
+
+def _markers(rig: RigCalibration) -> int:
+    return len(rig.markers.positions_plc_m)
+
+
+OVERHEAD = LocalizerSpec(
+    name="overhead",
+    doc="Fits the pose to the fake robot's overhead view, all markers at once.",
+    sources=("overhead",),
+    make=_overhead,
+    tiers=("geometric",),
+    needs=("cameras",),
+    rig=RigCalibration,
+    expected_markers=_markers,
 )
 
 

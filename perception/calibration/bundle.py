@@ -11,8 +11,8 @@ from executive.core.rig import RigCalibration
 from executive.core.types import Array
 from perception.calibration.parameters import changed_rig
 from perception.calibration.readings import readings
-from perception.calibration.sightings import Indices, Sightings
 from perception.calibration.survey import Survey
+from perception.calibration.target_images import Indices, TargetImages
 from perception.calibration.unknowns import Unknowns, turn_rate
 from perception.geometry.camera import StereoModel
 from perception.geometry.chain import Chain
@@ -28,7 +28,7 @@ class Bundle:
 
     rig: RigCalibration
     survey: Survey
-    sightings: Sightings
+    sightings: TargetImages
     unknowns: Unknowns
     sigmas: Array
     temperature_k: float

@@ -14,9 +14,9 @@ from executive.core.types import Array
 from perception.calibration.bundle import Bundle
 from perception.calibration.parameters import PARAMETERS, prior_sigmas
 from perception.calibration.result import Calibrated
-from perception.calibration.sightings import Mask, Sightings
 from perception.calibration.start import first_guess
 from perception.calibration.survey import Survey
+from perception.calibration.target_images import Mask, TargetImages
 from perception.geometry.pose import chi2_limit
 
 _GATE = chi2_limit(2, 0.9999)  # of one image
@@ -39,7 +39,7 @@ def calibrate(
     says what is wrong with a survey, or that it shows nothing.
     """
     markers, sigmas = len(rig.markers.positions_plc_m), prior_sigmas(priors)
-    every = Sightings.of(survey.checked(markers), markers)
+    every = TargetImages.of(survey.checked(markers), markers)
     unknowns = first_guess(rig, survey, every, len(PARAMETERS))
     bundle = Bundle(rig, survey, every, unknowns, sigmas, temperature_k)
     done = _minimum(bundle, unknowns.start(), _ROUGHLY)
@@ -82,7 +82,7 @@ def _fitting(bundle: Bundle, x: Array) -> Mask:
     return np.asarray(fits | ((suspect >= 0) & (suspect < worst[rows.target])))
 
 
-def _calibrated(bundle: Bundle, done: OptimizeResult, every: Sightings) -> Calibrated:
+def _calibrated(bundle: Bundle, done: OptimizeResult, every: TargetImages) -> Calibrated:
     k = bundle.unknowns.parameters
     J = bundle.jacobian(done.x)
     covariance = np.linalg.inv((J.T @ J).toarray())[:k, :k]

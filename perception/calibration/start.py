@@ -6,8 +6,8 @@ import numpy as np
 
 from executive.core.rig import RigCalibration
 from executive.core.types import Array
-from perception.calibration.sightings import Mask, Sightings
 from perception.calibration.survey import FARTHEST_M, NEAREST_M, Survey
+from perception.calibration.target_images import Mask, TargetImages
 from perception.calibration.unknowns import Bearing, Unknowns
 from perception.geometry.body import Transform
 from perception.geometry.camera import triangulate
@@ -17,7 +17,7 @@ from perception.geometry.pose import linear_guess
 _DISTANCE_M = 10.0  # of a point that no pair of images gives a distance
 
 
-def first_guess(rig: RigCalibration, survey: Survey, sightings: Sightings, parameters: int) -> Unknowns:
+def first_guess(rig: RigCalibration, survey: Survey, sightings: TargetImages, parameters: int) -> Unknowns:
     """Where the solution starts; ValueError for a station that no look shows well enough."""
     chain = Chain.of(rig)
     stations = tuple(_station(chain, survey, index) for index in range(len(survey.stations)))
@@ -39,7 +39,7 @@ def _station(chain: Chain, survey: Survey, index: int) -> Transform:
     raise ValueError(f"station {index}: got no look with 3 markers in both cameras, expected one")
 
 
-def _bearing(chain: Chain, survey: Survey, sightings: Sightings, target: int, name: str) -> Bearing:
+def _bearing(chain: Chain, survey: Survey, sightings: TargetImages, target: int, name: str) -> Bearing:
     mast = np.array([0.0, 0.0, chain.rig.head.mast_height_m])
     if name in survey.landmarks:
         return Bearing.towards(mast, np.asarray(survey.landmarks[name].position_site_m, dtype=np.float64))

@@ -17,21 +17,21 @@ _PAIR_NOISE = math.sqrt(2.0)  # a difference of two frames
 
 
 @dataclass(frozen=True)
-class View:
+class PlateView:
     """The view of the marker plane: range and cosine of the angle off its normal, worst of both cameras."""
 
     range_m: float
     cosine: float
 
 
-def view_of(chain: Chain, state: ChainState) -> View:
+def plate_view(chain: Chain, state: ChainState) -> PlateView:
     """How the cameras see the marker plane of a (predicted) state."""
     plc = chain.site_plc(state)
     head = chain.site_ih(state.head_rad)
     to_cameras = head.apply(chain.model.position_ih_m) - plc.apply(chain.markers_plc_m).mean(axis=0)
     ranges: Array = np.linalg.norm(to_cameras, axis=1)
     cosines = to_cameras @ plc.rotation[:, 2] / ranges
-    return View(float(ranges.max()), float(cosines.min()))
+    return PlateView(float(ranges.max()), float(cosines.min()))
 
 
 def emission(kind: str, cosine: float) -> float:
@@ -39,7 +39,7 @@ def emission(kind: str, cosine: float) -> float:
     return (1 + cosine) / 2 if kind == "dome" else max(cosine, 0.0)
 
 
-def filter_snr_per_pair(rig: RigCalibration, view: View) -> float:
+def filter_snr_per_pair(rig: RigCalibration, view: PlateView) -> float:
     """Matched-filter SNR of one marker in a one-pair difference image (paper, section 4.2)."""
     reference = rig.sensor.snr_1_range_m
     flux_in_noise = (reference / view.range_m) ** 2 / marker_spread(rig, reference).peak
@@ -52,7 +52,7 @@ def pairs_needed(snr_per_pair: float, wanted: float = SNR_WANTED) -> float:
     return math.inf if snr_per_pair <= 0 else max(1.0, math.ceil((wanted / snr_per_pair) ** 2 - 1e-9))
 
 
-def flux_expected(rig: RigCalibration, view: View) -> float:
+def flux_expected(rig: RigCalibration, view: PlateView) -> float:
     """Light of one marker summed over its image [counts]."""
     reference = rig.sensor.snr_1_range_m
     peak = _PAIR_NOISE * rig.sensor.noise_counts / marker_spread(rig, reference).peak

@@ -4,7 +4,7 @@ A frame that shows the same scene under slightly other light, from a head that q
     frame = mean - du * mean_u - dv * mean_v + gain * (mean - average) + offset + noise.
 The fit is taken out of the frame (it would leak background texture into the difference image) as long as
 it is small; a large one, or a large rest, means that the sequence does not show one scene. A head that
-trembles by pixels is no such case: its frames are brought onto one another first (frames.vibration).
+vibrates by pixels is no such case: its frames are brought onto one another first (frames.vibration).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class SimilarityLimits:
     """How far a frame may be from the sequence's mean; the last two in multiples of the pixel noise."""
 
     shift_px: float = 0.5
-    trembling_px: float = 4.5
+    vibration_px: float = 4.5
     gain: float = 0.10
     offset_noise: float = 12.0
     rest_noise: float = 2.0
@@ -77,12 +77,12 @@ def compare(
 
 
 def _settled(frames: Frames, noise_counts: float, limits: SimilarityLimits) -> Similarity | None:
-    """The same for frames of a head that trembles by pixels; None if it does by too many, or not at all."""
+    """The same for frames of a head that vibrates by pixels; None if it does by too many, or not at all."""
     movable = Movable(frames)
     shift = coarse_shifts(frames, movable)
     found: Similarity | None = None
     for _ in range(_FINE_ROUNDS):
-        if not _VISIBLE_SHIFT_PX < np.abs(shift).max() <= limits.trembling_px:
+        if not _VISIBLE_SHIFT_PX < np.abs(shift).max() <= limits.vibration_px:
             return None
         moved = movable.moved_back(shift)
         inside = shown_by_all(moved.shape[1:], shift)

@@ -85,7 +85,7 @@ class Stack:
 
     @property
     def unknown_px(self) -> float:
-        """How little is known of where a head that trembled pointed on average (frames.vibration)."""
+        """How little is known of where a head that vibrated pointed on average (frames.vibration)."""
         return math.sqrt(self._unknown_px2) / max(self._frames, 1)
 
     @property

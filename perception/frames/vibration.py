@@ -1,4 +1,4 @@
-"""Frames of a head that trembles by pixels, brought onto one another, and what its trembling leaves unknown.
+"""Frames of a head that vibrates by pixels, brought onto one another, and what its vibration leaves unknown.
 
 A frame is moved as a whole by its Fourier transform, which leaves noise as white and as strong as it was:
 eight-tap interpolation takes a fifth of it, and centres would seem that much better than they are. The mean
@@ -100,9 +100,9 @@ def shaken(chain: Chain, unknown: Sequence[float]) -> Chain:
         return chain
     rig, head = chain.rig, chain.rig.head
     half_width = math.sqrt(3.0) * worst / float(chain.model.focal_px.mean())  # of a uniform error as wide
-    trembling = replace(
+    vibrating = replace(
         head,
         pan_accuracy_rad=math.hypot(head.pan_accuracy_rad, half_width),
         tilt_accuracy_rad=math.hypot(head.tilt_accuracy_rad, half_width),
     )
-    return replace(chain, rig=replace(rig, head=trembling))
+    return replace(chain, rig=replace(rig, head=vibrating))

@@ -17,7 +17,7 @@ from executive.core.types import Array, PoseEstimate, Vec2
 from perception.geometry.body import Transform, kernel_cabin, plc_in_body
 from perception.geometry.camera import StereoModel
 from perception.geometry.head_model import kernel_head, site_ih
-from perception.geometry.rotation import exp_map, matrix_from_quat
+from perception.geometry.rotation import exp_map, matrix_from_quat, quat_from_matrix
 from perception.kernels.chain import STATE_SIZE as STATE_SIZE
 from perception.kernels.chain import Cabin, Head, project, project_points
 from perception.kernels.compiled import plain
@@ -113,3 +113,12 @@ class Chain:
 def body_transform(pose: PoseEstimate) -> Transform:
     """Body in site of a pose estimate."""
     return Transform(matrix_from_quat(pose.quat_site_body), np.array(pose.position_site_m))
+
+
+def pose_estimate(
+    time_s: float, site_body: Transform, covariance: Array, source: str, markers: int = 0
+) -> PoseEstimate:
+    """The pose estimate of a body in site with its covariance (6, 6)."""
+    x, y, z = site_body.position_m.tolist()
+    quat = quat_from_matrix(site_body.rotation)
+    return PoseEstimate(time_s, (x, y, z), quat, covariance, source, markers=markers)

@@ -61,7 +61,7 @@ class Prior:
 
 
 @dataclass(frozen=True, eq=False)
-class Fix:
+class PoseFit:
     """An estimated state. `covariance` (6, 6) of the body pose; `chi2` of the residuals with `dof`.
 
     `residual_px` (2, n, 2) is measured minus reprojected, NaN where not seen.
@@ -117,7 +117,7 @@ def _spanned(count: int, rotation: Array, position_m: Array, spanned: bool) -> T
     return Transform(rotation, position_m)
 
 
-def estimate(chain: Chain, sighting: Sighting, start: Transform, prior: Prior | None = None) -> Fix:
+def estimate(chain: Chain, sighting: Sighting, start: Transform, prior: Prior | None = None) -> PoseFit:
     """Weighted least squares over the chain from `start`; ValueError on wrong shapes or too few marks."""
     shape = (2, len(chain.markers_plc_m), 2)
     uv = plain(as_array("uv_px", sighting.uv_px, shape))
@@ -130,7 +130,7 @@ def estimate(chain: Chain, sighting: Sighting, start: Transform, prior: Prior | 
     found = gauss_newton(problem, plain(start.rotation), plain(start.position_m), sighting.angles_rad)
     pan, tilt, arm, cabin = found.angles_rad.tolist()
     state = ChainState(Transform(found.rotation, found.position_m), (pan, tilt), (arm, cabin))
-    return Fix(
+    return PoseFit(
         state,
         found.covariance,
         found.chi2,

@@ -23,7 +23,7 @@ _DIMMEST = 0.2  # of its flux is left where a step would make a marker darker th
 
 
 class Shown(NamedTuple):
-    """What the images say, as markers.likelihood.Evidence has it, and how far patches `reach` [px]."""
+    """What the images say, as markers.likelihood.MarkerPatches has it, and how far patches `reach` [px]."""
 
     images: tuple[Array, Array]
     weights: tuple[Array, Array]

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from executive.core.types import Array
 
 Function = TypeVar("Function", bound=Callable[..., object])
+_KERNELS: list[Any] = []
 
 
 def compiled(function: Function) -> Function:
@@ -28,7 +29,18 @@ def compiled(function: Function) -> Function:
     made: Any = njit(error_model="numpy")(function)
     with contextlib.suppress(RuntimeError):  # no folder to keep it in
         made._cache = _cache_of(function)
+    _KERNELS.append(made)
     return cast(Function, made)
+
+
+def uncompiled() -> list[str]:
+    """The kernels imported so far whose machine code, as the sources are now, is not on disk."""
+    return [kernel.__name__ for kernel in _KERNELS if not kernel.signatures and not _on_disk(kernel)]
+
+
+def _on_disk(kernel: Any) -> bool:
+    index = getattr(kernel._cache, "_cache_file", None)
+    return index is not None and bool(index._load_index())
 
 
 def _cache_of(function: Callable[..., object]) -> Any:

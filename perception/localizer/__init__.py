@@ -1,5 +1,5 @@
 """The localizer: what is asked of head and cameras, and which means answers it."""
 
-from perception.localizer.localizer import LedStereoLocalizer
+from perception.localizer.spec import LED_STEREO
 
-__all__ = ["LedStereoLocalizer"]
+__all__ = ["LED_STEREO"]

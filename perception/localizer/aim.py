@@ -7,7 +7,7 @@ import math
 from executive.core.clock import Clock
 from executive.core.devices import CABIN, HEAD, INCLINOMETER
 from executive.core.ports import Devices
-from executive.core.types import Outcome, PoseEstimate, Vec2
+from executive.core.types import HeadReading, Outcome, PoseEstimate, Vec2
 from perception.frames.routine import Steps, wait_for
 from perception.geometry.body import plc_in_body
 from perception.geometry.chain import Chain, body_transform
@@ -31,7 +31,7 @@ class Aim:
 
     def turn_to(
         self, predicted: PoseEstimate, offset_rad: Vec2, deadline_s: float
-    ) -> Steps[Outcome[PoseEstimate] | None]:
+    ) -> Steps[Outcome[HeadReading] | None]:
         """Bring the prediction (plus an offset) to the stereoscopic middle; an outcome if that failed."""
         pan, tilt = self.pointing(predicted)
         pan, tilt = self._clip(pan + offset_rad[0], tilt + offset_rad[1])
@@ -41,7 +41,7 @@ class Aim:
             return None
         return (yield from self.turn((pan, tilt), deadline_s))
 
-    def turn(self, head_rad: Vec2, deadline_s: float) -> Steps[Outcome[PoseEstimate] | None]:
+    def turn(self, head_rad: Vec2, deadline_s: float) -> Steps[Outcome[HeadReading] | None]:
         """Turn the head to these angles [rad]; an outcome if that failed."""
         turned = yield from wait_for(self._devices[HEAD].point(*head_rad), self._clock, deadline_s)
         return None if turned.ok else Outcome(turned.reason, f"head: {turned.detail}")

@@ -7,7 +7,7 @@ from executive.core.ports import Action, Cameras
 from executive.core.types import Centres, Images, Shot
 
 
-class Tally:
+class CountingCameras:
     """Cameras that count the frames ordered since `begin`."""
 
     def __init__(self, cameras: Cameras, clock: Clock) -> None:
@@ -28,6 +28,7 @@ class Tally:
         self.frames += len(shot.leds)
         return self._cameras.take(shot)
 
-    def told(self) -> str:
-        """In words."""
+    @property
+    def cost(self) -> str:
+        """What was spent since `begin`, in words."""
         return f"{self.frames} frames, {self.took_s:.0f} s in all"

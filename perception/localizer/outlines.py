@@ -17,25 +17,26 @@ from executive.core.devices import CAMERAS, INCLINOMETER
 from executive.core.ports import Devices
 from executive.core.types import (
     Array,
+    CameraView,
     Centres,
     Images,
     PoseEstimate,
     Shot,
-    Source,
 )
 from perception.frames.routine import Steps, wait_for
 from perception.frames.shots import saturation
 from perception.frames.similarity import compare
+from perception.frames.views import camera_views
 from perception.geometry.body import Transform
-from perception.geometry.chain import Chain
+from perception.geometry.chain import Chain, pose_estimate
 from perception.geometry.prediction import Expectation
-from perception.geometry.rotation import quat_from_matrix
 from perception.localizer.aim import Aim
 from perception.localizer.empty_views import REACH_M, EmptyView, EmptyViews
 from perception.localizer.scouting import UNLIT
-from perception.markers.choice import Rejection
-from perception.markers.look import look_at
+from perception.localizer.spec import PASSIVE
+from perception.markers.marker_fix import Rejection
 from perception.markers.plausibility import choose
+from perception.markers.single import find_candidates
 from perception.outline.passive import (
     Ground,
     PassiveFix,
@@ -47,16 +48,25 @@ from perception.outline.passive import (
 _MOST_OFF_M, _MOST_TURNED_RAD = 0.30, math.radians(15.0)  # as far as the outline is searched for
 _SIGMAS = 2.0
 _VIEWS = 2  # tried
+_NOWHERE = np.empty((2, 0, 2))
 _SUN_KEPT_S = 1200.0  # it moves by five degrees; to find it takes as long as all the rest
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class OutlineFix:
     """A pose and what it rests on; `data` is what was looked at."""
 
     pose: PoseEstimate
     note: str
     data: Images | Centres
+
+    @property
+    def views(self) -> tuple[CameraView, ...]:
+        """The mean images, without any marker."""
+        if isinstance(self.data, Centres):
+            return ()
+        left, right = (counts.mean(axis=0, dtype=np.float32) for counts in self.data.counts)
+        return camera_views(self.data, (left, right), _NOWHERE, _NOWHERE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +84,7 @@ class Outlines:
         self._aim, self._views = aim, views
         self._sun: tuple[float, Sun] | None = None
 
-    def find(self, predicted: PoseEstimate, deadline_s: float) -> Steps[Found | str]:
+    def find(self, predicted: PoseEstimate, deadline_s: float) -> Steps[OutlineFix | str]:
         """The rover's pose, or why it is not known."""
         off_m, turned_rad = _SIGMAS * predicted.sigma_position_m, _SIGMAS * predicted.sigma_heading_rad
         if off_m > _MOST_OFF_M or turned_rad > _MOST_TURNED_RAD:
@@ -85,12 +95,14 @@ class Outlines:
         why = "no outline sought: this place was not seen without the rover"
         for view in itertools.islice(views, _VIEWS):
             found = yield from self._against(view, predicted, deadline_s)
-            if isinstance(found, Found):
+            if isinstance(found, OutlineFix):
                 return found
             why = f"no outline against the view of {view.time_s:.0f} s: {found}"
         return why
 
-    def _against(self, view: EmptyView, predicted: PoseEstimate, deadline_s: float) -> Steps[Found | str]:
+    def _against(
+        self, view: EmptyView, predicted: PoseEstimate, deadline_s: float
+    ) -> Steps[OutlineFix | str]:
         """The head goes back to where it looked, for the same frames with the rover in them."""
         failed = yield from self._aim.turn(view.head_rad, deadline_s)
         if failed is not None:
@@ -112,7 +124,7 @@ class Outlines:
         if misfit := expectation.misfit(body.site_body, body.covariance):
             return misfit
         note = f"outline against the view of {view.time_s:.0f} s, {len(UNLIT)} frames; {body.note}"
-        return Found(_estimate(data.time_s, body), note, data)
+        return OutlineFix(pose_estimate(data.time_s, body.site_body, body.covariance, PASSIVE), note, data)
 
     def _from_images(self, data: Images, view: EmptyView, expectation: Expectation) -> _Body | str:
         sensor = self._chain.rig.sensor
@@ -143,7 +155,7 @@ class Outlines:
 
     def _from_centres(self, data: Centres, expectation: Expectation) -> _Body | str:
         """The geometric tier tells an outline by where it puts the markers' places."""
-        candidates = look_at(self._chain.rig, data, 1.0).candidates
+        candidates = find_candidates(self._chain.rig, data, 1.0).candidates
         if not np.isfinite(data.uv_px).all():
             return "no outline shows"
         state, tilt = expectation.state, self._devices[INCLINOMETER].read()
@@ -151,11 +163,4 @@ class Outlines:
         found = choose(self._chain, candidates, state.head_rad, state.joints_rad, attitude, expectation.prior)
         if isinstance(found, Rejection):
             return found.why
-        return _Body(found.fix.state.site_body, found.fix.covariance, "as the outline's error model has it")
-
-
-def _estimate(time_s: float, body: _Body) -> PoseEstimate:
-    x, y, z = body.site_body.position_m.tolist()
-    return PoseEstimate(
-        time_s, (x, y, z), quat_from_matrix(body.site_body.rotation), body.covariance, Source.PASSIVE
-    )
+        return _Body(found.fit.state.site_body, found.fit.covariance, "as the outline's error model has it")

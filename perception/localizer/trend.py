@@ -12,9 +12,9 @@ from executive.core.types import (
     Centres,
     Images,
     PoseEstimate,
-    Source,
+    PoseSource,
 )
-from perception.frames.exposure import view_of
+from perception.frames.exposure import plate_view
 from perception.geometry.chain import Chain
 from perception.geometry.coarse_position import coarse_position
 from perception.geometry.prediction import Expectation
@@ -53,7 +53,7 @@ def coarse_pose(
         position_site_m=(float(x), float(y), float(z)),
         quat_site_body=predicted.quat_site_body,
         covariance=covariance,
-        source=Source.TREND,
+        source=PoseSource.TREND,
     )
 
 
@@ -61,7 +61,7 @@ def _seen(chain: Chain, expectation: Expectation, data: Images | Centres) -> tup
     """The moving rover's place (3,) in site [m] and its covariance (3, 3)."""
     if isinstance(data, Centres):
         return _from_middles(chain, expectation, data)
-    moving = moving_rover(chain, expectation, data, view_of(chain, expectation.state).range_m)
+    moving = moving_rover(chain, expectation, data, plate_view(chain, expectation.state).range_m)
     return None if moving is None else (moving.position_m, moving.covariance)
 
 

@@ -8,50 +8,42 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from executive.core.clock import Clock
 from executive.core.devices import CAMERAS, INCLINOMETER
 from executive.core.ports import Devices, LocaliseRequest
 from executive.core.rig import RigCalibration
 from executive.core.types import (
-    Array,
     Centres,
     Images,
     Outcome,
     Quality,
+    Reason,
     Shot,
+    Vec2,
     Window,
 )
 from perception.frames.codes import coded_sequence
 from perception.frames.difference import led_sequence
-from perception.frames.exposure import filter_snr_per_pair, pairs_needed, view_of
+from perception.frames.exposure import filter_snr_per_pair, pairs_needed, plate_view
 from perception.frames.metering import Metering
 from perception.frames.psf import marker_spread
 from perception.frames.routine import Steps, wait_for
 from perception.frames.shots import overexposed
-from perception.frames.vibration import shaken
 from perception.geometry.chain import Chain
 from perception.geometry.prediction import Expectation
 from perception.geometry.roi import full_windows, predicted_windows
-from perception.markers.choice import (
-    Choice,
-    JointFix,
-    Rejection,
-    noted,
-)
 from perception.markers.effort import (
     joint_pairs,
     more_pairs,
     seen_singly,
     wanted_by,
 )
-from perception.markers.look import look_at
-from perception.markers.plausibility import choose
-from perception.markers.shot_stack import Pile
+from perception.markers.marker_fix import Rejection
+from perception.markers.observation import Observation
+from perception.markers.shot_stack import ShotStack
+from perception.markers.single import single_observation
 
-SINGLE_MOST_PAIRS = {Quality.PRECISE: 64, Quality.FAR: 400}
+MOST_PAIRS_SINGLY = {Quality.PRECISE: 64, Quality.FAR: 400}
 _PIXEL_BUDGET = 32_000_000  # per camera and shot: frames x window, for memory and time
 _LEAST_CODED_PAIRS = 4
 _MARGIN_PX = 8.0
@@ -66,22 +58,9 @@ class Scope:
     pairs_factor: float = 1.0
 
 
-@dataclass(frozen=True, eq=False)
-class Sight:
-    """What came of a look: the last data, pairs and frames it cost, the dark images and centres for people,
-    what makes the frames unusable (or empty), and the pose or why there is none."""
-
-    data: Images | Centres
-    pairs: int
-    frames: int
-    reference: tuple[NDArray[np.float32], NDArray[np.float32]] | None
-    detected_px: Array
-    problem: str
-    answer: Choice | JointFix | Rejection
-
-
-class Eyes:
-    """Takes looks with the cameras. Each ends with a Sight, None without time for it, or the failure."""
+class MarkerDetector:
+    """Takes looks with the cameras. Each ends with an observation, with the cameras' failure, or, where there
+    is no time for it, with None."""
 
     def __init__(self, devices: Devices, rig: RigCalibration, clock: Clock) -> None:
         self._devices, self._rig, self._clock = devices, rig, clock
@@ -91,24 +70,28 @@ class Eyes:
 
     def look(
         self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
-    ) -> Steps[Outcome[Sight] | Sight | None]:
+    ) -> Steps[Outcome[Observation] | None]:
         """Look for the markers of the expected rover."""
         windows = self._marker_windows(expectation, scope)
         if self._light.exposure < 1.0:
             yield from self._light.measure(windows, deadline_s)
         way = self._singly if seen_singly(self._chain, expectation) else self._jointly
-        sight = yield from way(expectation, scope, request, deadline_s)
-        if isinstance(sight, Sight) and overexposed(sight.data, self._rig.sensor):
+        looked = yield from way(expectation, scope, request, deadline_s)
+        if (
+            looked is not None
+            and looked.value is not None
+            and overexposed(looked.value.data, self._rig.sensor)
+        ):
             showed = yield from self._light.measure(windows, deadline_s)
-            if showed and self._light.exposure < sight.data.shot.exposure:
-                return (yield from way(expectation, scope, request, deadline_s)) or sight
-        return sight
+            if showed and self._light.exposure < looked.value.data.shot.exposure:
+                return (yield from way(expectation, scope, request, deadline_s)) or looked
+        return looked
 
     def most_pairs(self, expectation: Expectation, request: LocaliseRequest) -> tuple[float, int]:
         """Pairs that the expected view needs for detection or more, and the most that would be taken."""
         if seen_singly(self._chain, expectation):
-            snr = filter_snr_per_pair(self._rig, view_of(self._chain, expectation.state))
-            return pairs_needed(snr), SINGLE_MOST_PAIRS[request.quality]
+            snr = filter_snr_per_pair(self._rig, plate_view(self._chain, expectation.state))
+            return pairs_needed(snr), MOST_PAIRS_SINGLY[request.quality]
         wanted = wanted_by(request)
         return joint_pairs(self._chain, expectation, wanted), wanted.most_pairs
 
@@ -125,42 +108,32 @@ class Eyes:
 
     def _singly(
         self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
-    ) -> Steps[Outcome[Sight] | Sight | None]:
+    ) -> Steps[Outcome[Observation] | None]:
         """Each LED by itself, reference frames between."""
         markers = len(self._chain.markers_plc_m)
         windows = self._marker_windows(expectation, scope)
-        snr = filter_snr_per_pair(self._rig, view_of(self._chain, expectation.state))
+        snr = filter_snr_per_pair(self._rig, plate_view(self._chain, expectation.state))
         by_memory = (self._frames_at_once(windows) - 1) // (markers + 1)
         by_time = (self._frames_until(deadline_s) - 1) // (markers + 1)
         wanted = pairs_needed(snr) * scope.pairs_factor * self._light.pairs_factor
-        pairs = int(min(wanted, SINGLE_MOST_PAIRS[request.quality], max(by_memory, 1), by_time))
+        pairs = int(min(wanted, MOST_PAIRS_SINGLY[request.quality], max(by_memory, 1), by_time))
         if pairs < 1:
             return None
         shot = self._shot(led_sequence(markers, pairs), windows)
         taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
         if taken.value is None or not taken.ok:
             return Outcome(taken.reason, f"cameras: {taken.detail}")
-        data = taken.value
-        state = replace(expectation.state, head_rad=(data.head.pan_rad, data.head.tilt_rad))
-        found = look_at(self._rig, data, view_of(self._chain, state).range_m)
-        tilt = self._devices[INCLINOMETER].read()
-        attitude = (tilt.roll_rad, tilt.pitch_rad)
-        chain = shaken(self._chain, found.unknown_px)
-        answer = noted(
-            choose(chain, found.candidates, state.head_rad, state.joints_rad, attitude, expectation.prior),
-            found.note,
-        )
-        centres = answer.detected_px if isinstance(answer, Choice) else found.strongest_px
-        return Sight(data, pairs, len(shot.leds), found.reference, centres, found.problem, answer)
+        observation = single_observation(self._chain, taken.value, pairs, expectation, self._tilt_rad)
+        return Outcome(Reason.DONE, value=observation)
 
     def _jointly(
         self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
-    ) -> Steps[Outcome[Sight] | Sight | None]:
+    ) -> Steps[Outcome[Observation] | None]:
         """All LEDs coded at once, shot upon shot, until the pose is as good as wanted."""
         wanted, windows = wanted_by(request), self._marker_windows(expectation, scope)
         at_once = max(self._frames_at_once(windows) // 2, _LEAST_CODED_PAIRS)
         most = at_once if windows == full_windows(self._chain) else wanted.most_pairs
-        pile, sight, pairs = Pile(self._chain), None, 0
+        stack, looked, pairs = ShotStack(self._chain), None, 0
         factor = scope.pairs_factor * self._light.pairs_factor
         todo = int(min(joint_pairs(self._chain, expectation, wanted) * factor, most))
         while todo > 0:
@@ -171,30 +144,32 @@ class Eyes:
             taken = yield from wait_for(self._devices[CAMERAS].take(shot), self._clock, deadline_s)
             if taken.value is None or not taken.ok:
                 return Outcome(taken.reason, f"cameras: {taken.detail}")
-            pile.add(taken.value)
+            stack.add(taken.value)
             pairs, todo = pairs + batch, todo - batch
-            if todo < _LEAST_CODED_PAIRS or pile.problem:
-                sight = self._sight(pile, taken.value, expectation, scope, pairs)
-                answer = sight.answer
-                if not isinstance(answer, JointFix) or sight.problem or pairs >= most:
+            if todo < _LEAST_CODED_PAIRS or stack.problem:
+                observation = self._stacked(stack, taken.value, expectation, scope, pairs)
+                looked = Outcome(Reason.DONE, value=observation)
+                if isinstance(observation.fix, Rejection) or observation.problem or pairs >= most:
                     break
-                todo = more_pairs(answer.fix, pairs, wanted)
-        return sight
+                todo = more_pairs(observation.fix.fit, pairs, wanted)
+        return looked
 
-    def _sight(
-        self, pile: Pile, data: Images | Centres, expectation: Expectation, scope: Scope, pairs: int
-    ) -> Sight:
-        """What the pile shows so far."""
-        tilt = self._devices[INCLINOMETER].read()
+    def _stacked(
+        self, stack: ShotStack, data: Images | Centres, expectation: Expectation, scope: Scope, pairs: int
+    ) -> Observation:
+        """What the shots show so far."""
         state = replace(expectation.state, head_rad=(data.head.pan_rad, data.head.tilt_rad))
         widen = _WHOLE_FRAME_WIDEN if scope.widen is None else scope.widen
-        answer = pile.answer(replace(expectation, state=state), (tilt.roll_rad, tilt.pitch_rad), widen)
-        nowhere = np.full((2, len(self._chain.markers_plc_m), 2), np.nan)
-        centres = answer.detected_px if isinstance(answer, JointFix) else nowhere
-        return Sight(data, pairs, pile.frames, pile.reference, centres, pile.problem, answer)
+        return stack.observation(data, pairs, replace(expectation, state=state), self._tilt_rad, widen)
+
+    @property
+    def _tilt_rad(self) -> Vec2:
+        """Roll and pitch as the inclinometers have them now."""
+        tilt = self._devices[INCLINOMETER].read()
+        return tilt.roll_rad, tilt.pitch_rad
 
     def _marker_windows(self, expectation: Expectation, scope: Scope) -> tuple[Window, Window]:
-        spread = marker_spread(self._rig, view_of(self._chain, expectation.state).range_m)
+        spread = marker_spread(self._rig, plate_view(self._chain, expectation.state).range_m)
         return self.windows(expectation, scope.widen, spread.radius_px + _MARGIN_PX)
 
     def _shot(self, leds: tuple[int, ...], windows: tuple[Window, Window]) -> Shot:

@@ -9,14 +9,14 @@ import numpy as np
 
 from executive.core.ports import LocaliseRequest
 from executive.core.types import Array, Quality
-from perception.frames.exposure import filter_snr_per_pair, pairs_needed, view_of
+from perception.frames.exposure import filter_snr_per_pair, pairs_needed, plate_view
 from perception.geometry.chain import Chain
-from perception.geometry.pose import Fix
+from perception.geometry.pose import PoseFit
 from perception.geometry.prediction import Expectation
 from perception.markers.fisher import centre_bounds, pose_bound
 
 JOINT_SNR_WANTED = 9.5  # of all markers together: thresholds are 5 to 6.5, and an SNR scatters by 1
-SINGLE_MOST_PAIRS = 32  # where more would be needed to see each marker by itself, all are looked for as one
+JOINT_ABOVE_PAIRS = 32  # where more would be needed to see each marker by itself, all are looked for as one
 _STEP = 8  # pairs, to the next tried
 
 
@@ -49,15 +49,15 @@ def wanted_by(request: LocaliseRequest) -> Wanted:
 
 def seen_singly(chain: Chain, expectation: Expectation) -> bool:
     """Whether each marker by itself is expected to stand out after few pairs."""
-    snr = filter_snr_per_pair(chain.rig, view_of(chain, expectation.state))
-    return pairs_needed(snr) <= SINGLE_MOST_PAIRS
+    snr = filter_snr_per_pair(chain.rig, plate_view(chain, expectation.state))
+    return pairs_needed(snr) <= JOINT_ABOVE_PAIRS
 
 
 def joint_pairs(chain: Chain, expectation: Expectation, wanted: Wanted) -> float:
     """Pairs for detection and for the accuracy wanted, by the Cramer-Rao bound; detection alone may ask for
     more than `most_pairs`, inf where no light is expected."""
     markers = len(chain.markers_plc_m)
-    snr = filter_snr_per_pair(chain.rig, view_of(chain, expectation.state)) * math.sqrt(2 * markers)
+    snr = filter_snr_per_pair(chain.rig, plate_view(chain, expectation.state)) * math.sqrt(2 * markers)
     pairs = pairs_needed(snr, JOINT_SNR_WANTED)
     if pairs >= wanted.most_pairs:
         return pairs
@@ -69,12 +69,12 @@ def joint_pairs(chain: Chain, expectation: Expectation, wanted: Wanted) -> float
     return wanted.most_pairs
 
 
-def more_pairs(fix: Fix, pairs: int, wanted: Wanted) -> int:
-    """Pairs to take after `pairs` gave this fix; 0 where it is good enough or they would be too many."""
-    if wanted.met_by(fix.covariance):
+def more_pairs(fit: PoseFit, pairs: int, wanted: Wanted) -> int:
+    """Pairs to take after `pairs` gave this fit; 0 where it is good enough or they would be too many."""
+    if wanted.met_by(fit.covariance):
         return 0
-    position = math.sqrt(float(np.linalg.eigvalsh(fix.covariance[:2, :2])[-1]))
-    excess = max(position / wanted.position_m, math.sqrt(fix.covariance[5, 5]) / wanted.heading_rad)
+    position = math.sqrt(float(np.linalg.eigvalsh(fit.covariance[:2, :2])[-1]))
+    excess = max(position / wanted.position_m, math.sqrt(fit.covariance[5, 5]) / wanted.heading_rad)
     more = min(math.ceil((excess**2 - 1) * pairs), wanted.most_pairs - pairs)
     return _rounded(more) if more >= _STEP else 0
 

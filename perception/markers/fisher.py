@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from executive.core.types import Array
-from perception.frames.exposure import flux_expected, view_of
+from perception.frames.exposure import flux_expected, plate_view
 from perception.frames.psf import Spread, marker_spread
 from perception.geometry.chain import STATE_SIZE, Chain, ChainState
 from perception.geometry.pose import roll_pitch
@@ -40,7 +40,7 @@ def centre_bounds(chain: Chain, state: ChainState, pairs: float) -> Array:
 
     For the rig's own sensor noise and marker power, and the range and angle at which the state shows them.
     """
-    view = view_of(chain, state)
+    view = plate_view(chain, state)
     spread, flux = marker_spread(chain.rig, view.range_m), flux_expected(chain.rig, view)
     noise = chain.rig.sensor.noise_counts * math.sqrt(2.0 / pairs)
     uv, _ = chain.project(state)

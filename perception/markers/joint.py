@@ -21,15 +21,9 @@ from executive.core.types import Array, Vec2
 from perception.frames.difference import Difference
 from perception.frames.psf import Spread
 from perception.geometry.chain import Chain, ChainState
-from perception.geometry.pose import Fix, Readings, chi2_limit
+from perception.geometry.pose import PoseFit, Readings, chi2_limit
 from perception.geometry.prediction import Expectation
 from perception.geometry.rotation import log_map
-from perception.markers.choice import (
-    JointFix,
-    Rejection,
-    faces_cameras,
-    noted,
-)
 from perception.markers.identity import exchanges
 from perception.markers.joint_search import (
     JointScene,
@@ -37,7 +31,13 @@ from perception.markers.joint_search import (
     alike,
     sighting_without_centres,
 )
-from perception.markers.likelihood import Evidence, Likely, most_likely
+from perception.markers.likelihood import Likely, MarkerPatches, most_likely
+from perception.markers.marker_fix import (
+    MarkerFix,
+    Rejection,
+    faces_cameras,
+    with_note,
+)
 from perception.markers.posterior import posterior
 
 # Of the whole region: a third of the 1e-3 that is claimed. The threshold keeps its theory's leading term only
@@ -68,7 +68,7 @@ def joint_fix(
     expectation: Expectation,
     tilt_rad: Vec2,
     widen: float = 1.0,
-) -> JointFix | Rejection:
+) -> MarkerFix | Rejection:
     """The one pose in the expectation's region that the difference images show, or why there is none.
 
     A blind camera is None: the pose then comes from the other alone, and asks for three markers.
@@ -85,7 +85,7 @@ def joint_fix(
         return _gated(scene, found)
     swapped, said = _exchanged(scene, shown, found)
     if swapped is not None:
-        return noted(_gated(scene, swapped), said)
+        return with_note(_gated(scene, swapped), said)
     lack = _too_few(scene, shown, found) or _otherwise(scene, shown, found)
     return Rejection(lack, found.shining) if lack else _gated(scene, found)
 
@@ -99,7 +99,7 @@ class _Found:
     shared: bool
     lead: float
     threshold: float
-    evidence: Evidence
+    patches: MarkerPatches
 
     @property
     def shining(self) -> int:
@@ -126,8 +126,8 @@ def _find(scene: JointScene, images: Searchable) -> _Found | Rejection:
     nearest = max(shown, key=lambda one: _worth(scene.expectation, one))
     rivals = [_worth(scene.expectation, one) for one in likely if one is not nearest]
     lead = _worth(scene.expectation, nearest) - max(rivals, default=-math.inf)
-    best, shared = _with_own_fluxes(scene.chain, images.evidence, scene.readings, nearest)
-    return _Found(best, shared, lead, threshold, images.evidence)
+    best, shared = _with_own_fluxes(scene.chain, images.patches, scene.readings, nearest)
+    return _Found(best, shared, lead, threshold, images.patches)
 
 
 def _exchanged(scene: JointScene, images: Searchable, found: _Found) -> tuple[_Found | None, str]:
@@ -197,11 +197,11 @@ def _nothing(markers: int) -> Difference:
 
 
 def _with_own_fluxes(
-    chain: Chain, evidence: Evidence, readings: Readings, best: Likely
+    chain: Chain, patches: MarkerPatches, readings: Readings, best: Likely
 ) -> tuple[Likely, bool]:
     """The pose again with a flux for each marker, where one for all does not fit; dark ones drop out."""
-    information = best.local.information[..., 0, 0] * evidence.gain**2
-    pull = best.local.score[..., 0] * evidence.gain
+    information = best.local.information[..., 0, 0] * patches.gain**2
+    pull = best.local.score[..., 0] * patches.gain
     total = np.maximum(information.sum(axis=0), 1e-30)
     change, sigma = pull.sum(axis=0) / total, 1 / np.sqrt(total)
     if float(((change / sigma) ** 2).sum()) <= chi2_limit(len(change) - 1, _EVEN_GATE):
@@ -210,7 +210,7 @@ def _with_own_fluxes(
     own = np.where(own > _LEAST_MARKER_SNR * sigma, own, 0.0)
     if np.count_nonzero(own) < _LEAST_MARKERS:
         return replace(best, flux_counts=own), False
-    again = most_likely(chain, evidence, readings, best.state, own, shared=False)
+    again = most_likely(chain, patches, readings, best.state, own, shared=False)
     return (best, True) if again is None else (again, False)
 
 
@@ -219,34 +219,34 @@ def _worth(expectation: Expectation, one: Likely) -> float:
     return one.snr**2 - expectation.distance2(one.state.site_body)
 
 
-def _gated(scene: JointScene, found: _Found) -> JointFix | Rejection:
+def _gated(scene: JointScene, found: _Found) -> MarkerFix | Rejection:
     """The pose as a fix, unless the images contradict it or something else explains them as well."""
     best = found.best
     alive = best.flux_counts > 0
     gate = _GATE if found.bright.sum() > _LEAST_MARKERS else _FEW_GATE
-    fix, detected = _as_fix(scene, best, alive)
+    fit = _fit_of(scene, best, alive)
     seen = int(alive.sum())
     if not best.converged:
         return Rejection(f"no best pose after {best.steps} steps", seen)
-    if fix.chi2 > chi2_limit(fix.dof, gate):
-        return Rejection(f"the images pull the markers apart: chi-square {fix.chi2:.0f} of {fix.dof}", seen)
+    if fit.chi2 > chi2_limit(fit.dof, gate):
+        return Rejection(f"the images pull the markers apart: chi-square {fit.chi2:.0f} of {fit.dof}", seen)
     if uneven := _unevenness(found):
         return Rejection(uneven, seen)
     if found.lead < _RIVAL:
         return Rejection(f"two poses explain the images, {found.lead:.1f} apart in log likelihood", seen)
-    if not faces_cameras(scene.chain, fix):
+    if not faces_cameras(scene.chain, fit):
         return Rejection("the markers would show their backs", seen)
     note = f"joint SNR {best.snr:.1f}, {found.threshold:.1f} needed"
-    state, covariance = posterior(scene.chain, found.evidence, scene.readings, best, found.shared)
-    return _settled(scene.chain, JointFix(fix, seen, detected, note), state, covariance)
+    detected_px = fit.reprojected_px + fit.residual_px
+    state, covariance = posterior(scene.chain, found.patches, scene.readings, best, found.shared)
+    return MarkerFix(_moved(scene.chain, fit, detected_px, state, covariance), detected_px, note)
 
 
-def _settled(chain: Chain, found: JointFix, state: ChainState, covariance: Array) -> JointFix:
-    """The same fix at the mean of what the images allow instead of at the peak."""
+def _moved(chain: Chain, fit: PoseFit, detected_px: Array, state: ChainState, covariance: Array) -> PoseFit:
+    """The same fit at the mean of what the images allow instead of at the peak."""
     uv, _ = chain.project(state)
-    residual = np.where(np.isfinite(found.detected_px), found.detected_px - uv, np.nan)
-    fix = replace(found.fix, state=state, covariance=covariance, reprojected_px=uv, residual_px=residual)
-    return replace(found, fix=fix)
+    residual = np.where(np.isfinite(detected_px), detected_px - uv, np.nan)
+    return replace(fit, state=state, covariance=covariance, reprojected_px=uv, residual_px=residual)
 
 
 def _unevenness(found: _Found) -> str:
@@ -261,8 +261,8 @@ def _unevenness(found: _Found) -> str:
     return f"the markers do not shine alike in both cameras: chi-square {chi2:.0f} of {dof}"
 
 
-def _as_fix(scene: JointScene, best: Likely, alive: NDArray[np.bool_]) -> tuple[Fix, Array]:
-    """The fix and the centres that the images alone would have.
+def _fit_of(scene: JointScene, best: Likely, alive: NDArray[np.bool_]) -> PoseFit:
+    """The pose as a fit, its residuals those of the centres that the images alone would have.
 
     Chi-square is that of the likelihood's score at the pose, which is exact also where a single centre is
     far too faint to be a measurement of its own.
@@ -276,5 +276,4 @@ def _as_fix(scene: JointScene, best: Likely, alive: NDArray[np.bool_]) -> tuple[
     chi2 = float((pull * score).sum()) + best.readings_chi2
     readings = 4 + 2 + 1  # encoders, inclinometers, the surface
     dof = score.size + readings - 10
-    fix = Fix(best.state, best.covariance, chi2, dof, uv, residual, best.steps, best.converged)
-    return fix, uv + residual
+    return PoseFit(best.state, best.covariance, chi2, dof, uv, residual, best.steps, best.converged)

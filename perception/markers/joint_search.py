@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from executive.core.types import Array, Vec2
 from perception.frames.difference import Difference
-from perception.frames.exposure import emission, flux_expected, view_of
+from perception.frames.exposure import emission, flux_expected, plate_view
 from perception.frames.psf import Spread
 from perception.geometry.chain import Chain, ChainState
 from perception.geometry.pose import Readings, Sighting
 from perception.geometry.prediction import Expectation
 from perception.markers.centres import filter_snr
 from perception.markers.false_alarms import joint_threshold
-from perception.markers.likelihood import Evidence, Likely, most_likely
+from perception.markers.likelihood import Likely, MarkerPatches, most_likely
 from perception.markers.search import REGION_SIGMAS, FilterImages, Lattice
 
 _STARTS = 12
@@ -30,17 +30,17 @@ _PLACE_AND_HEADING = 3  # directions of the region searched
 
 @dataclass(frozen=True, eq=False)
 class Searchable:
-    """Difference images made ready: matched-filter SNR, evidence, and the flux [counts] of a marker whose
+    """Difference images made ready: matched-filter SNR, patches, and the flux [counts] of a marker whose
     filter SNR is 1."""
 
     filtered: tuple[FilterImages, FilterImages]
-    evidence: Evidence
+    patches: MarkerPatches
     flux_unit: float
 
     def exchanged(self, order: Sequence[int]) -> Searchable:
         """The same if each marker were on the line of the LED that stands in its place."""
         left, right = (replace(one, snr=one.snr[order]) for one in self.filtered)
-        return replace(self, filtered=(left, right), evidence=self.evidence.exchanged(order))
+        return replace(self, filtered=(left, right), patches=self.patches.exchanged(order))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +74,8 @@ class JointScene:
             for c, corner in zip(images, self.corners_px, strict=True)
         )
         gain = relative_gain(self.chain, self.expectation.state)
-        evidence = Evidence.of(images, self.corners_px, self.spread, gain)
-        return Searchable((left, right), evidence, _flux_unit(images, self.spread))
+        patches = MarkerPatches.of(images, self.corners_px, self.spread, gain)
+        return Searchable((left, right), patches, _flux_unit(images, self.spread))
 
     def climbed(self, images: Searchable, used: NDArray[np.bool_] | None = None) -> list[Likely]:
         """The distinct poses that the best places lead to by the light of all markers, or the used (n,)."""
@@ -86,13 +86,13 @@ class JointScene:
             if start.snr <= max(starts[0].snr - _COARSE_LOSS, 0.0):
                 break
             flux = used * (start.snr / np.sqrt(2 * len(used)) * images.flux_unit)
-            one = most_likely(self.chain, images.evidence, self.readings, start.state, flux, shared=True)
+            one = most_likely(self.chain, images.patches, self.readings, start.state, flux, shared=True)
             if one is not None and not any(alike(self.chain, one, other) for other in reached):
                 reached.append(one)
         return [one for one in reached if self.searched(one)]
 
     def searched(self, one: Likely) -> bool:
-        """Whether a climb ended about where it was allowed to begin: of chance finds elsewhere the threshold
+        """Whether a climb ended about where it was allowed to begin: of false alarms elsewhere the threshold
         knows nothing."""
         reach = REGION_SIGMAS * max(self.widen, 1.0)
         return self.expectation.distance2(one.state.site_body) <= _PLACE_AND_HEADING * reach**2
@@ -104,7 +104,7 @@ class JointScene:
 
     def expected_snr(self, images: Searchable) -> float:
         """Joint SNR of all markers at their nominal power, seen as expected."""
-        flux = flux_expected(self.chain.rig, view_of(self.chain, self.expectation.state))
+        flux = flux_expected(self.chain.rig, plate_view(self.chain, self.expectation.state))
         seen = len(self.seeing) * len(self.chain.markers_plc_m)
         return flux / images.flux_unit * math.sqrt(seen)
 

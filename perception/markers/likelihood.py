@@ -28,7 +28,7 @@ _PROBE_SIGMAS = 0.04
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class MarkerPatches:
     """What the images say: difference images of both cameras, padded so that every patch lies inside.
 
     Per camera: images and inverse variances (n, h, w), zero in the padding, full-frame place of the first
@@ -44,14 +44,14 @@ class Evidence:
     @classmethod
     def of(
         cls, cameras: Sequence[Difference], corners_px: Sequence[tuple[int, int]], spread: Spread, gain: Array
-    ) -> Evidence:
+    ) -> MarkerPatches:
         pad = _radius(spread)
         left, right = (_padded(c.images, pad) for c in cameras)
         weights = [_padded(np.square(1 / c.sigma, dtype=np.float64), pad) for c in cameras]
         corners = [plain(corner) - pad for corner in corners_px]
         return cls((left, right), (weights[0], weights[1]), (corners[0], corners[1]), spread, plain(gain))
 
-    def exchanged(self, order: Sequence[int]) -> Evidence:
+    def exchanged(self, order: Sequence[int]) -> MarkerPatches:
         """The same if each marker were on the line of the LED that stands in its place."""
         left, right = (images[order] for images in self.images)
         weights = [weights[order] for weights in self.weights]
@@ -93,11 +93,16 @@ class Likely:
 
 
 def most_likely(
-    chain: Chain, evidence: Evidence, readings: Readings, start: ChainState, flux_counts: Array, shared: bool
+    chain: Chain,
+    patches: MarkerPatches,
+    readings: Readings,
+    start: ChainState,
+    flux_counts: Array,
+    shared: bool,
 ) -> Likely | None:
     """Climb the likelihood from `start`; `shared` ties all markers to one flux. None if no light is found."""
     flux = plain(np.where(flux_counts > 0, flux_counts, 0.0))
-    task = task_of(chain, evidence, readings, flux, shared)
+    task = task_of(chain, patches, readings, flux, shared)
     place, at, steps, converged = climbed(task, place_of(start, flux))
     if not np.isfinite(at.value) or not place.flux_counts.any():
         return None
@@ -109,14 +114,14 @@ def most_likely(
 
 
 def observed_information(
-    chain: Chain, evidence: Evidence, readings: Readings, at: Likely, shared: bool
+    chain: Chain, patches: MarkerPatches, readings: Readings, at: Likely, shared: bool
 ) -> Array:
     """Information (10 + fluxes, square) from the likelihood's own curvature, by central differences.
 
     Of faint light each image has its luck; the curvature knows it, the expected information does not. That
     one is taken where the likelihood is not curved downwards in all directions.
     """
-    task = task_of(chain, evidence, readings, at.flux_counts, shared)
+    task = task_of(chain, patches, readings, at.flux_counts, shared)
 
     def gradient(step: Array) -> Array:
         flux = at.flux_counts + task.groups @ step[STATE_SIZE:]
@@ -129,10 +134,12 @@ def observed_information(
     return H if np.linalg.eigvalsh(H)[0] > 0 else expected
 
 
-def task_of(chain: Chain, evidence: Evidence, readings: Readings, flux_counts: Array, shared: bool) -> Task:
+def task_of(
+    chain: Chain, patches: MarkerPatches, readings: Readings, flux_counts: Array, shared: bool
+) -> Task:
     """Everything that a state is held against; a marker without flux stays dark."""
     groups = plain(_groups(flux_counts, shared))
-    return Task(*chain.kernel_rig, readings.measured, evidence.shown, groups)
+    return Task(*chain.kernel_rig, readings.measured, patches.shown, groups)
 
 
 def place_of(state: ChainState, flux_counts: Array) -> Place:

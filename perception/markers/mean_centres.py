@@ -13,7 +13,7 @@ from perception.geometry.chain import Chain
 from perception.geometry.pose import Sighting, chi2_limit, estimate
 from perception.geometry.prediction import Expectation
 from perception.geometry.rotation import rot_z
-from perception.markers.choice import JointFix, Rejection, faces_cameras
+from perception.markers.marker_fix import MarkerFix, Rejection, faces_cameras
 
 _GATE = 0.999
 _HEADINGS = 9  # starts over the heading's uncertainty
@@ -45,22 +45,22 @@ class MeanCentres:
 
 def fix_from_centres(
     chain: Chain, centres: MeanCentres, expectation: Expectation, tilt_rad: Vec2
-) -> JointFix | Rejection:
+) -> MarkerFix | Rejection:
     """The pose of given centres on the known surface, climbed from several headings."""
     state = expectation.state
     sighting = centres.sighting(state.head_rad, state.joints_rad, tilt_rad)
     seen = int(np.isfinite(sighting.uv_px).all(axis=(0, 2)).sum())
     if seen < 2:
         return Rejection(f"{seen} of {len(chain.markers_plc_m)} markers seen by both cameras, 2 needed", seen)
-    fixes = [estimate(chain, sighting, start, expectation.surface) for start in _starts(expectation)]
-    converged = [fix for fix in fixes if fix.converged and faces_cameras(chain, fix)]
+    fits = [estimate(chain, sighting, start, expectation.surface) for start in _starts(expectation)]
+    converged = [fit for fit in fits if fit.converged and faces_cameras(chain, fit)]
     if not converged:
         return Rejection(f"no pose explains the {seen} markers seen", seen)
-    best = min(converged, key=lambda fix: fix.chi2 + expectation.distance2(fix.state.site_body))
-    fix = replace(best, dof=best.dof - 5)  # of the prior's six rows, the surface is one
-    if fix.chi2 > chi2_limit(fix.dof, _GATE):
-        return Rejection(f"the {seen} markers seen fit no pose: chi-square {fix.chi2:.0f} of {fix.dof}", seen)
-    return JointFix(fix, seen, sighting.uv_px, f"chi-square {fix.chi2:.1f} of {fix.dof}")
+    best = min(converged, key=lambda fit: fit.chi2 + expectation.distance2(fit.state.site_body))
+    fit = replace(best, dof=best.dof - 5)  # of the prior's six rows, the surface is one
+    if fit.chi2 > chi2_limit(fit.dof, _GATE):
+        return Rejection(f"the {seen} markers seen fit no pose: chi-square {fit.chi2:.0f} of {fit.dof}", seen)
+    return MarkerFix(fit, sighting.uv_px, f"chi-square {fit.chi2:.1f} of {fit.dof}")
 
 
 def _starts(expectation: Expectation) -> Iterator[Transform]:

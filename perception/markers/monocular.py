@@ -14,14 +14,8 @@ from dataclasses import replace
 from perception.geometry.pose import Prior, chi2_limit, estimate
 from perception.geometry.prediction import surface_of
 from perception.markers.centres import Detection
-from perception.markers.choice import (
-    Candidates,
-    Choice,
-    Circumstances,
-    Rejection,
-    brightness_misfit,
-    faces_cameras,
-)
+from perception.markers.circumstances import Candidates, Circumstances, brightness_misfit
+from perception.markers.marker_fix import MarkerFix, Rejection, faces_cameras
 
 LEAST_MARKERS = 3  # two in one camera fit too much
 _GATE = 0.999
@@ -29,7 +23,7 @@ _MAX_TRIALS = 48
 _SURFACE_ROWS = 5  # of the prior's six, those that say nothing
 
 
-def choose_alone(around: Circumstances, candidates: Candidates) -> Choice | Rejection:
+def choose_alone(around: Circumstances, candidates: Candidates) -> MarkerFix | Rejection:
     """The set of one camera's candidates that a pose on the ground explains; the other has none."""
     sees = [camera for camera, per_marker in enumerate(candidates) if per_marker]
     if len(sees) != 1 or around.prior is None:
@@ -38,9 +32,9 @@ def choose_alone(around: Circumstances, candidates: Candidates) -> Choice | Reje
     name = ("left", "right")[camera]
     lit = [m for m, found in enumerate(candidates[camera]) if found]
     for count in range(len(lit), LEAST_MARKERS - 1, -1):
-        choice = _best_of(around, prior, camera, candidates[camera], count)
-        if choice is not None:
-            return choice
+        fix = _best_of(around, prior, camera, candidates[camera], count)
+        if fix is not None:
+            return fix
     return Rejection(
         f"{name} camera alone: {len(lit)} of {around.markers} markers seen, at least {LEAST_MARKERS} needed"
         if len(lit) < LEAST_MARKERS
@@ -51,18 +45,18 @@ def choose_alone(around: Circumstances, candidates: Candidates) -> Choice | Reje
 
 def _best_of(
     around: Circumstances, prior: Prior, camera: int, per_marker: Sequence[Sequence[Detection]], count: int
-) -> Choice | None:
+) -> MarkerFix | None:
     """The most likely set of so many detections that passes."""
-    accepted: list[tuple[float, Choice]] = []
+    accepted: list[tuple[float, MarkerFix]] = []
     name = ("left", "right")[camera]
-    for tried, chosen in enumerate(itertools.islice(_sets(per_marker, count), _MAX_TRIALS), start=1):
+    for chosen in itertools.islice(_sets(per_marker, count), _MAX_TRIALS):
         sighting = around.sighting((camera, marker, detection) for marker, detection in chosen)
-        fix = estimate(around.chain, sighting, prior.site_body, surface_of(prior))
-        fix = replace(fix, dof=fix.dof - _SURFACE_ROWS)
-        passes = fix.converged and fix.chi2 <= chi2_limit(fix.dof, _GATE)
-        if passes and faces_cameras(around.chain, fix):
-            misfit = fix.chi2 + brightness_misfit([detection.flux_counts for _, detection in chosen])
-            accepted.append((misfit, Choice(fix, sighting, tried, f"{name} camera alone")))
+        fit = estimate(around.chain, sighting, prior.site_body, surface_of(prior))
+        fit = replace(fit, dof=fit.dof - _SURFACE_ROWS)
+        passes = fit.converged and fit.chi2 <= chi2_limit(fit.dof, _GATE)
+        if passes and faces_cameras(around.chain, fit):
+            misfit = fit.chi2 + brightness_misfit([detection.flux_counts for _, detection in chosen])
+            accepted.append((misfit, MarkerFix(fit, sighting.uv_px, f"{name} camera alone")))
     return min(accepted, key=lambda a: a[0])[1] if accepted else None
 
 

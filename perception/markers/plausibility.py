@@ -34,15 +34,9 @@ from perception.geometry.rotation import (
     rot_z,
 )
 from perception.markers.centres import Detection
-from perception.markers.choice import (
-    Candidates,
-    Choice,
-    Circumstances,
-    Rejection,
-    brightness_misfit,
-    faces_cameras,
-)
+from perception.markers.circumstances import Candidates, Circumstances, brightness_misfit
 from perception.markers.identity import exchanges
+from perception.markers.marker_fix import MarkerFix, Rejection, faces_cameras
 from perception.markers.monocular import choose_alone
 
 _GATE = 0.999
@@ -76,7 +70,7 @@ def choose(
     joints_rad: Vec2,
     tilt_rad: Vec2 | None,
     prior: Prior | None = None,
-) -> Choice | Rejection:
+) -> MarkerFix | Rejection:
     """The jointly consistent set of candidates and the pose it gives, or why there is none.
 
     `prior` starts the search for an attitude and is used as a measurement where fewer than four markers
@@ -91,33 +85,32 @@ def choose(
     return found
 
 
-def _as_labelled(around: Circumstances, candidates: Candidates) -> Choice | Rejection:
+def _as_labelled(around: Circumstances, candidates: Candidates) -> MarkerFix | Rejection:
     """The best set, each LED taken for the marker that it should be."""
     pairs = _pairs(around, candidates)
     seen = sum(bool(p) for p in pairs)
     if seen < _LEAST_MARKERS:
         return Rejection(f"{seen} of {around.markers} markers seen by both cameras, at least 2 needed", seen)
-    least, tried = min(seen, _OF_MORE), 0
+    least = min(seen, _OF_MORE)
     for count in range(seen, least - 1, -1):
-        found = _best_of(around, pairs, count, tried)
-        if isinstance(found, Choice):
-            return found
-        tried = found
+        fix = _best_of(around, pairs, count)
+        if fix is not None:
+            return fix
     return Rejection(f"no pose explains {least} or more of the {seen} markers seen", seen)
 
 
-def _swapped(around: Circumstances, candidates: Candidates) -> Choice | None:
+def _swapped(around: Circumstances, candidates: Candidates) -> MarkerFix | None:
     """A pose of all markers with one or two couples of LEDs exchanged, if just one is near the prediction."""
     if around.prior is None:
         return None
-    found: list[tuple[float, Choice]] = []
+    found: list[tuple[float, MarkerFix]] = []
     expected = ChainState(around.prior.site_body, around.head_rad, around.joints_rad)
     for order, said in exchanges(around.markers):
         pairs = _pairs(around, [[camera[m] for m in order] for camera in candidates])
-        choice = _best_of(around, pairs, around.markers, 0)
-        if isinstance(choice, Choice):
-            distance2 = Expectation(expected, around.prior.covariance).distance2(choice.fix.state.site_body)
-            found.append((distance2, replace(choice, note=said)))
+        fix = _best_of(around, pairs, around.markers)
+        if fix is not None:
+            distance2 = Expectation(expected, around.prior.covariance).distance2(fix.fit.state.site_body)
+            found.append((distance2, replace(fix, note=said)))
     found.sort(key=lambda f: f[0])
     alone = len(found) == 1 or (len(found) > 1 and found[1][0] - found[0][0] > _LEAD)
     return found[0][1] if alone else None
@@ -128,18 +121,15 @@ def _pairs(around: Circumstances, candidates: Candidates) -> list[list[StereoPoi
     return [_stereo_points(around.chain, m, left[m], right[m]) for m in range(around.markers)]
 
 
-def _best_of(
-    around: Circumstances, pairs: Sequence[Sequence[StereoPoint]], count: int, tried: int
-) -> Choice | int:
-    """The most likely set of so many points that passes; how many were tried if none does."""
-    accepted: list[tuple[float, Choice]] = []
+def _best_of(around: Circumstances, pairs: Sequence[Sequence[StereoPoint]], count: int) -> MarkerFix | None:
+    """The most likely set of so many points that passes."""
+    accepted: list[tuple[float, MarkerFix]] = []
     for points in itertools.islice(_rigid_sets(around.chain, pairs, count), _MAX_TRIALS):
-        tried += 1
-        choice = _try(around, points, tried)
-        if choice is not None:
+        fix = _fix_of(around, points)
+        if fix is not None:
             flux = [p.left.flux_counts + p.right.flux_counts for p in points]
-            accepted.append((choice.fix.chi2 + brightness_misfit(flux), choice))
-    return min(accepted, key=lambda a: a[0])[1] if accepted else tried
+            accepted.append((fix.fit.chi2 + brightness_misfit(flux), fix))
+    return min(accepted, key=lambda a: a[0])[1] if accepted else None
 
 
 def _stereo_points(
@@ -205,7 +195,7 @@ def _distances_fit(chain: Chain, points: Sequence[StereoPoint]) -> bool:
     return True
 
 
-def _try(around: Circumstances, points: Sequence[StereoPoint], tried: int) -> Choice | None:
+def _fix_of(around: Circumstances, points: Sequence[StereoPoint]) -> MarkerFix | None:
     """The set's pose, if its residuals pass."""
     chain, prior = around.chain, around.prior
     sighting = around.sighting(
@@ -215,9 +205,9 @@ def _try(around: Circumstances, points: Sequence[StereoPoint], tried: int) -> Ch
     if len(points) < 3 and prior is None and around.tilt_rad is None:
         return None
     for start in _starts(chain, points, sighting, prior):
-        fix = estimate(chain, sighting, start, measured_prior)
-        if fix.chi2 <= chi2_limit(fix.dof, _GATE) and fix.converged and faces_cameras(chain, fix):
-            return Choice(fix, sighting, tried)
+        fit = estimate(chain, sighting, start, measured_prior)
+        if fit.chi2 <= chi2_limit(fit.dof, _GATE) and fit.converged and faces_cameras(chain, fit):
+            return MarkerFix(fit, sighting.uv_px)
     return None
 
 

@@ -19,8 +19,8 @@ from perception.geometry.pose import Readings
 from perception.kernels.compiled import plain
 from perception.kernels.likelihoods import log_likelihoods
 from perception.markers.likelihood import (
-    Evidence,
     Likely,
+    MarkerPatches,
     observed_information,
     place_of,
     task_of,
@@ -34,16 +34,16 @@ _EFFECTIVE = 0.3  # share of draws that must count before moments are believed
 
 
 def posterior(
-    chain: Chain, evidence: Evidence, readings: Readings, peak: Likely, shared: bool
+    chain: Chain, patches: MarkerPatches, readings: Readings, peak: Likely, shared: bool
 ) -> tuple[ChainState, Array]:
     """The mean state and the covariance (6, 6) of its body pose, given what found this peak.
 
     Fluxes are integrated out: one of all markers if `shared`, else one of each that shines. Where the draws
     miss the likelihood, which then is no peak, it is the state found, with the covariance of its curvature.
     """
-    task = task_of(chain, evidence, readings, peak.flux_counts, shared)
+    task = task_of(chain, patches, readings, peak.flux_counts, shared)
     place = place_of(peak.state, peak.flux_counts)
-    curvature = observed_information(chain, evidence, readings, peak, shared)
+    curvature = observed_information(chain, patches, readings, peak, shared)
     mean: Array = np.zeros(STATE_SIZE)
     P: Array = np.asarray(np.linalg.inv(curvature), dtype=np.float64)[:STATE_SIZE, :STATE_SIZE]
     for _ in range(_ROUNDS):

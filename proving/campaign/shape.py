@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema
 from pydantic_core import PydanticCustomError
@@ -67,7 +67,7 @@ class CampaignFile(Strict):
     scenario: str | dict[str, Any]
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     runs: Annotated[int, Field(ge=1)] = 100
-    tier: Literal["full", "geometric"] | None = None
+    tier: Name | None = None
     vary: Varied = Field(default_factory=dict)
     grid: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(default_factory=dict)
     faults: FaultDraw | None = None

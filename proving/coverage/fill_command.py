@@ -30,7 +30,7 @@ FILE = click.Path(path_type=Path)
 @click.option(
     "--runs", type=click.IntRange(min=1), default=100, show_default=True, help="Maximum number of runs."
 )
-@click.option("--tier", type=click.Choice(["full", "geometric"]), help="Tier of every run.")
+@click.option("--tier", help="Tier of every run.")
 @click.option("--excuses", type=FILE, help="File of impossible outcomes, with reasons.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--quiet", is_flag=True, help="Show no progress on stderr.")

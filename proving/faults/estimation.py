@@ -17,11 +17,11 @@ from executive.core.ports import (
     Localizer,
 )
 from executive.core.types import (
+    Localisation,
     Outcome,
     PoseEstimate,
     TiltReading,
     Vec2,
-    View,
 )
 from executive.core.units import Angle, Length
 from executive.run import Cue, FaultSpec
@@ -52,18 +52,17 @@ class _FalseLocalizer:
     fault: PoseFault
     cue: Cue
 
-    def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
+    def locate(self, request: LocaliseRequest) -> Action[Localisation]:
         return Altered(self.inner.locate(request), self._falsified)
-
-    def views(self) -> tuple[View, ...]:
-        return self.inner.views()
 
     def pointing(self, pose: PoseEstimate) -> Vec2:
         return self.inner.pointing(pose)
 
-    def _falsified(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
-        pose = outcome.value
-        return outcome if pose is None else replace(outcome, value=self.fault.see(pose, self.cue))
+    def _falsified(self, outcome: Outcome[Localisation]) -> Outcome[Localisation]:
+        found = outcome.value
+        if found is None or found.pose is None:
+            return outcome
+        return replace(outcome, value=replace(found, pose=self.fault.see(found.pose, self.cue)))
 
 
 class Shift(Parameters):

@@ -139,7 +139,7 @@ def _spec(source: Source, place: Place, kind: str, setting: Setting) -> FaultSpe
     spec = registered(FAULT_KIND, kind, source.key_at(place))
     fits = (("backend", setting.backend, spec.backends), ("tier", setting.tier, spec.tiers))
     for what, got, able in fits:
-        if able and got not in able:
+        if able and got is not None and got not in able:
             message = f"got {kind} with the {what} {got}, which it cannot act in; expected {listed(able)}"
             raise ConfigError([source.key_at(place).problem(message)])
     return spec

@@ -16,19 +16,19 @@ from executive.core.types import (
     HeadReading,
     Images,
     PoseEstimate,
+    PoseSource,
     Shot,
-    Source,
     Window,
 )
 from perception.frames.codes import coded_sequence, lit
 from perception.frames.difference import led_sequence, pair_weights
-from perception.frames.exposure import SNR_WANTED, filter_snr_per_pair, view_of
+from perception.frames.exposure import SNR_WANTED, filter_snr_per_pair, plate_view
 from perception.frames.psf import marker_spread
 from perception.frames.vibration import shaken
 from perception.geometry.body import Transform
 from perception.geometry.chain import Chain, ChainState
 from perception.geometry.follow_up import pointing_at
-from perception.geometry.pose import Fix, roll_pitch
+from perception.geometry.pose import PoseFit, roll_pitch
 from perception.geometry.prediction import Expectation, expect
 from perception.geometry.roi import predicted_windows
 from perception.geometry.rotation import (
@@ -38,11 +38,11 @@ from perception.geometry.rotation import (
     rot_y,
     rot_z,
 )
-from perception.markers.choice import Rejection, noted
 from perception.markers.fisher import centre_bound, pose_bound
-from perception.markers.look import look_at
+from perception.markers.marker_fix import Rejection, with_note
 from perception.markers.plausibility import choose
-from perception.markers.shot_stack import Pile
+from perception.markers.shot_stack import ShotStack
+from perception.markers.single import find_candidates
 from tests.perception.synthetic import GAIN_E, Scene, noise_counts, observed
 from tests.perception.trial_camera import Disturbance, Nuisance, Stage, TrialCamera, flux_e
 
@@ -109,7 +109,7 @@ def draw(
         (float(position[0] + error[0]), float(position[1] + error[1]), 0.0),
         quat_from_matrix(rot_z(error[2]) @ body.rotation),
         np.diag([off_m**2 / 3, off_m**2 / 3, 1e-12, 1e-4, 1e-4, off_rad**2 / 3]),
-        Source.PREDICTION,
+        PoseSource.PREDICTION,
     )
     head = pointing_at(chain, np.add(predicted.position_site_m, [0, 0, 0.12]))
     said = ChainState(body, head, (0.0, cabin))
@@ -124,7 +124,7 @@ def draw(
 def sequence_for(setting: Setting, pairs: int) -> tuple[tuple[int, ...], bool]:
     """The LED masks that the localizer would take for so many pairs, and whether it then detects jointly."""
     chain = setting.true.chain
-    single = filter_snr_per_pair(chain.rig, view_of(chain, setting.said)) * np.sqrt(pairs) >= SNR_WANTED
+    single = filter_snr_per_pair(chain.rig, plate_view(chain, setting.said)) * np.sqrt(pairs) >= SNR_WANTED
     if single or pairs < 4:
         return led_sequence(4, pairs), not single
     return coded_sequence(4, pairs), True
@@ -157,16 +157,16 @@ def run_trial(
         found, seconds = (_jointly if joint else _singly)(setting, cameras, stage, rng)
     except ValueError as refused:
         found, seconds = Rejection(str(refused), 0), watch.elapsed_s()
-    fix = getattr(found, "fix", None)
-    why = found.why if fix is None else setting.expectation.misfit(fix.state.site_body, fix.covariance)
+    fit = getattr(found, "fit", None)
+    why = found.why if fit is None else setting.expectation.misfit(fit.state.site_body, fit.covariance)
     if why:
         return Trial(None, None, limit, seconds, why)
-    return Trial(_error(setting.said.site_body, fix), fix.covariance, limit, seconds, "")
+    return Trial(_error(setting.said.site_body, fit), fit.covariance, limit, seconds, "")
 
 
 def windows_of(setting: Setting) -> tuple[Window, Window]:
     chain, expected = setting.true.chain, setting.expectation
-    margin = marker_spread(chain.rig, view_of(chain, expected.state).range_m).radius_px + 8.0
+    margin = marker_spread(chain.rig, plate_view(chain, expected.state).range_m).radius_px + 8.0
     windows = predicted_windows(chain, expected.state, expected.covariance, margin)
     assert windows is not None
     return windows
@@ -175,16 +175,16 @@ def windows_of(setting: Setting) -> tuple[Window, Window]:
 def _jointly(setting, cameras, stage, rng):
     """The joint answer and its processing time."""
     watch, unused = Stopwatch(), 0.0
-    pile = Pile(setting.true.chain)
+    stack = ShotStack(setting.true.chain)
     for first in range(0, len(stage.leds), CHUNK):
         part = slice(first, first + CHUNK)
         before = watch.elapsed_s()
         counts = tuple(camera.expose(part, rng) for camera in cameras)
         unused += watch.elapsed_s() - before
-        pile.add(_images(setting, stage, part, counts))
-        if pile.problem:
-            return Rejection(pile.problem, 0), watch.elapsed_s() - unused
-    return pile.answer(setting.expectation, setting.tilt_rad, 1.0), watch.elapsed_s() - unused
+        stack.add(_images(setting, stage, part, counts))
+        if stack.problem:
+            return Rejection(stack.problem, 0), watch.elapsed_s() - unused
+    return stack.fix(setting.expectation, setting.tilt_rad, 1.0), watch.elapsed_s() - unused
 
 
 def _singly(setting, cameras, stage, rng):
@@ -193,13 +193,13 @@ def _singly(setting, cameras, stage, rng):
     counts = tuple(camera.expose(slice(None), rng) for camera in cameras)
     watch = Stopwatch()
     images = _images(setting, stage, slice(None), counts)
-    look = look_at(chain.rig, images, view_of(chain, setting.expectation.state).range_m)
+    look = find_candidates(chain.rig, images, plate_view(chain, setting.expectation.state).range_m)
     if look.problem:
         return Rejection(look.problem, 0), watch.elapsed_s()
     prior = setting.expectation.prior
     chain = shaken(chain, look.unknown_px)
     found = choose(chain, look.candidates, said.head_rad, said.joints_rad, setting.tilt_rad, prior)
-    return noted(found, look.note), watch.elapsed_s()
+    return with_note(found, look.note), watch.elapsed_s()
 
 
 def _images(setting, stage, part, counts) -> Images:
@@ -214,8 +214,8 @@ def _joint_weights(leds: tuple[int, ...]) -> np.ndarray:
     return np.sqrt(np.diag(np.linalg.inv(scatter)))
 
 
-def _error(true: Transform, fix: Fix) -> np.ndarray:
-    body = fix.state.site_body
+def _error(true: Transform, fit: PoseFit) -> np.ndarray:
+    body = fit.state.site_body
     return np.concatenate([true.position_m - body.position_m, log_map(true.rotation @ body.rotation.T)])
 
 

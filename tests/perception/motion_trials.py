@@ -17,10 +17,10 @@ from executive.core.types import (
     HeadReading,
     Images,
     PoseEstimate,
+    PoseSource,
     Shot,
-    Source,
 )
-from perception.frames.exposure import view_of
+from perception.frames.exposure import plate_view
 from perception.geometry.body import Transform
 from perception.geometry.chain import Chain
 from perception.geometry.follow_up import pointing_at
@@ -88,7 +88,7 @@ def draw(range_m: float, rng: np.random.Generator, step_m: float = STEP_M, sites
     start = end - step_m * np.array([np.cos(course), np.sin(course)])
     before, after = stand(terrain, *start, heading), stand(terrain, *end, heading)
     expectation, predicted = _expected(chain, after, rng)
-    margin_px = window_margin_px(RIG, view_of(chain, expectation.state).range_m)
+    margin_px = window_margin_px(RIG, plate_view(chain, expectation.state).range_m)
     windows = predicted_windows(chain, expectation.state, expectation.covariance, margin_px)
     windows = windows or full_windows(chain)
     head = np.array(expectation.state.head_rad) + _accuracy() * rng.uniform(-1, 1, 2)
@@ -120,7 +120,7 @@ def _expected(chain: Chain, body: Transform, rng: np.random.Generator) -> tuple[
         (float(x), float(y), float(z)),
         quat_from_matrix(turned),
         np.diag(np.square(sigma)),
-        Source.PREDICTION,
+        PoseSource.PREDICTION,
     )
     raised = float(rng.choice([0.0, 0.5, 1.0]))
     roll, pitch = roll_pitch(body.rotation)[0] + RIG.rover.inclinometer_sigma_rad * rng.standard_normal(2)
@@ -135,7 +135,7 @@ def run_trial(range_m: float, rng: np.random.Generator) -> Trial:
 
 def judge(s: Setting, repeats: int = 3) -> Trial:
     """What is made of a setting's frames, against the truth; the time is the shortest of some repeats."""
-    range_m = view_of(s.chain, s.expectation.state).range_m
+    range_m = plate_view(s.chain, s.expectation.state).range_m
     seconds = []
     for _ in range(repeats):
         watch = Stopwatch()

@@ -15,7 +15,7 @@ import numpy as np
 
 from executive.core.clock import Stopwatch
 from executive.core.rig import RigCalibration
-from executive.core.types import PoseEstimate, Source, Window
+from executive.core.types import PoseEstimate, PoseSource, Window
 from perception.geometry.body import Transform
 from perception.geometry.chain import Chain
 from perception.geometry.follow_up import pointing_at
@@ -142,7 +142,7 @@ def draw(range_m: float, wrong: Wrong, rng: np.random.Generator) -> Setting:
         (float(x), float(y), float(surveyed)),
         quat_from_matrix(rot_z(turned) @ body.rotation),
         np.diag([OFF_M**2 / 3, OFF_M**2 / 3, 1e-12, 1e-4, 1e-4, OFF_RAD**2 / 3]),
-        Source.PREDICTION,
+        PoseSource.PREDICTION,
     )
     said_head = pointing_at(chain, np.add(predicted.position_site_m, [0, 0, 0.1]))
     raised = float(rng.choice([0.0, 0.5, 1.0]))

@@ -16,9 +16,9 @@ from executive.core.types import (
     Images,
     Outcome,
     PoseEstimate,
+    PoseSource,
     Reason,
     Shot,
-    Source,
     TiltReading,
     Window,
 )
@@ -154,7 +154,7 @@ class Robot:
             (x + off_m[0], y + off_m[1], z + 0.005),
             quat_from_matrix(rot_z(off_heading) @ body.rotation),
             np.diag([sigma_m**2, sigma_m**2, 0.01**2, 0.02**2, 0.02**2, sigma_heading**2]),
-            Source.PREDICTION,
+            PoseSource.PREDICTION,
         )
 
 

@@ -26,7 +26,7 @@ from tests.perception.synthetic import (
 )
 
 FULL = 2**BITS - 1
-_RIM_PX = 4  # of ground around the window, which comes in when the head trembles
+_RIM_PX = 4  # of ground around the window, which comes in when the head vibrates
 _SHEET_PX = 2048
 
 
@@ -101,7 +101,7 @@ class Disturbance:
         return counts
 
     @property
-    def trembles(self) -> bool:
+    def vibrates(self) -> bool:
         return type(self).shift_px is not Disturbance.shift_px
 
     @property
@@ -178,7 +178,7 @@ class TrialCamera:
 
     def _ground_in(self, frame: int, progress: float, rng: np.random.Generator) -> np.ndarray:
         ground = self._inner_e
-        if self.disturbance.trembles:
+        if self.disturbance.vibrates:
             ground = _moved(self.ground_e, self.disturbance.shift_px(frame))
         if self.slopes_e is not None:
             n = self.nuisance

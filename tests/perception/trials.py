@@ -13,8 +13,8 @@ from perception.geometry.chain import ChainState
 from perception.geometry.pose import roll_pitch
 from perception.geometry.rotation import log_map
 from perception.markers.centres import find_markers
-from perception.markers.choice import Choice
 from perception.markers.fisher import centre_bound, pose_bound
+from perception.markers.marker_fix import MarkerFix
 from perception.markers.plausibility import choose
 from tests.perception.synthetic import (
     GAIN_E,
@@ -71,12 +71,12 @@ def trial(scene: Scene, leds, rng) -> tuple[np.ndarray, np.ndarray] | None:
     tilt, _ = roll_pitch(said.site_body.rotation)
     tilt = tilt + chain.rig.rover.inclinometer_sigma_rad * rng.standard_normal(2)
     candidates = [[_detect(true, c, m, leds, rng) for m in range(4)] for c in (0, 1)]
-    choice = choose(chain, candidates, said.head_rad, said.joints_rad, tuple(tilt))
-    if not isinstance(choice, Choice):
+    fix = choose(chain, candidates, said.head_rad, said.joints_rad, tuple(tilt))
+    if not isinstance(fix, MarkerFix):
         return None
-    body = choice.fix.state.site_body
+    body = fix.fit.state.site_body
     turn = log_map(said.site_body.rotation @ body.rotation.T)
-    return np.concatenate([said.site_body.position_m - body.position_m, turn]), choice.fix.covariance
+    return np.concatenate([said.site_body.position_m - body.position_m, turn]), fix.fit.covariance
 
 
 def _flux_e(scene: Scene, c: int, m: int) -> float:

@@ -14,9 +14,9 @@ from executive.core.rig import RigCalibration
 from executive.core.types import (
     Point,
     PoseEstimate,
+    PoseSource,
     Quality,
     Segment,
-    Source,
 )
 from executive.isc.attitude import quat_from_heading_tilt
 from executive.run.fault import FAULT_KIND
@@ -70,10 +70,10 @@ def markers_found(backend, localizer):
     position, _ = backend.world.body.pose()
     covariance = np.diag([0.02**2] * 3 + [0.05**2] * 3)
     quat = quat_from_heading_tilt(0.0, 0.0, 0.0)
-    prior = PoseEstimate(backend.clock.now_s, tuple(position), quat, covariance, Source.PRIOR)
+    prior = PoseEstimate(backend.clock.now_s, tuple(position), quat, covariance, PoseSource.PRIOR)
     fix = finish(backend, localizer.locate(LocaliseRequest(Quality.PRECISE, prior)))
     assert fix.ok, fix
-    return fix.value.markers
+    return fix.value.pose.markers
 
 
 @pytest.mark.parametrize("tier", ["full", "geometric"])

@@ -19,7 +19,7 @@ from executive.core.types import (
 )
 from executive.run.fault import FAULT_KIND
 from perception.frames.difference import led_sequence
-from perception.markers.look import look_at
+from perception.markers.single import find_candidates
 from sim_pybullet import BACKEND
 from sim_pybullet.backend import SimBackend
 from sim_pybullet.config import WorldConfig
@@ -100,7 +100,7 @@ class Bench:
 
     def centres(self) -> Array:
         """Centres (2, 4, 2) [px] as perception finds them, NaN where it does not, all if it refuses."""
-        look = look_at(self.backend.rig, self.shot(), float(np.linalg.norm(self.position)))
+        look = find_candidates(self.backend.rig, self.shot(), float(np.linalg.norm(self.position)))
         uv = np.full((2, 4, 2), np.nan)
         for camera, marker in np.ndindex(2, 4):
             clear = [d for d in look.candidates[camera][marker] if d.snr > CLEAR_SNR]

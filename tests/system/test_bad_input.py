@@ -147,7 +147,10 @@ def test_many_problems_in_many_files_are_told_at_once(
         (("--set", "seeed=3"), '--set:1:1: got the unknown key "seeed"'),
         (("--set", "world.lihgt.sun_elevation=3 deg"), 'did you mean "light"?'),
         (("--set", "seed=three"), '--set:1:6: got "three", expected a whole number'),
-        (("--set", "seed=3", "--set", "tier=ful"), '--set:2:6: got "ful", expected full or geometric'),
+        (
+            ("--set", "seed=3", "--set", "tier=ful"),
+            '--set:2:6: got "ful", expected a tier of fake: geometric',
+        ),
         (("--set", "time_limit=3 m"), "--set:1:12: got '3 m' (a length)"),
         (("--set", "time_limit=3 h]"), "--set:1:"),
         (("--set", "seed"), '--set:1:1: got "seed", expected KEY=VALUE'),

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from executive.core.errors import ConfigError, Problem, RecordError
-from executive.core.types import Call, PoseEstimate, Source
+from executive.core.types import Call, PoseEstimate, PoseSource
 from executive.core.units import UnitError, parse, split
 from executive.record import History
 from executive.record.events import (
@@ -95,7 +95,7 @@ def explain(folder: Path, at: str | None = None) -> Explanation:
     strategies = _until(history, StrategyEvent, at_s)
     refused = [At(t, e.message) for t, e in _until(history, LogEvent, at_s) if e.name == _POOL]
     weighed = _until(history, HypothesesEvent, at_s)
-    poses = [e for _, e in _until(history, PoseEstimate, at_s) if e.source is not Source.TREND]
+    poses = [e for _, e in _until(history, PoseEstimate, at_s) if e.source != PoseSource.TREND]
     return Explanation(
         scenario=start.event.scenario if start else folder.name,
         seed=start.event.seed if start else None,
@@ -174,7 +174,7 @@ def _link(link: Link) -> dict[str, object]:
 def _pose(pose: PoseEstimate) -> dict[str, object]:
     return {
         "t_s": pose.time_s,
-        "source": pose.source.value,
+        "source": pose.source,
         "position_site_m": list(pose.position_site_m),
         "heading_rad": pose.heading_rad,
         "sigma_position_m": pose.sigma_position_m,

@@ -58,7 +58,7 @@ def _place(found: Explanation) -> str:
     heading_deg, sigma_mm = math.degrees(pose.heading_rad), pose.sigma_position_m * 1000
     return (
         f", believed at x {pose.x_m:.3f} m, y {pose.y_m:.3f} m, heading {heading_deg:.1f} deg "
-        f"(±{sigma_mm:.1f} mm, by {pose.source.value})"
+        f"(±{sigma_mm:.1f} mm, by {pose.source})"
     )
 
 

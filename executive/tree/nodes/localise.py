@@ -5,12 +5,12 @@ from __future__ import annotations
 from executive.core.devices import DRIVE
 from executive.core.ports import Action, LocaliseRequest
 from executive.core.types import (
+    Localisation,
     Outcome,
     PoseEstimate,
     Quality,
     Reason,
     Segment,
-    Source,
 )
 from executive.core.values import (
     ANGLE,
@@ -61,15 +61,19 @@ class Localise(ActionLeaf):
             self._action = self.request()
         return super().step()
 
-    def request(self) -> Action[PoseEstimate]:
+    def request(self) -> Action[Localisation]:
         predicted = self.services.classification.predicted()
         request = LocaliseRequest(self.quality, predicted, self.budget, self.segment, self.position, self.yaw)
         return self.services.localizer.locate(request)
 
-    def finish(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
+    def finish(self, outcome: Outcome[Localisation]) -> Outcome[PoseEstimate]:
+        seen = outcome.value or Localisation(None)
+        self.services.journal.views(seen.views, outcome)
+        return self._weighed(self.gate_fix(Outcome(outcome.reason, outcome.detail, seen.pose)))
+
+    def _weighed(self, outcome: Outcome[PoseEstimate]) -> Outcome[PoseEstimate]:
+        """Tell the classification, the record and the tree."""
         classification = self.services.classification
-        self.services.journal.views(self.services.localizer.views(), outcome)
-        outcome = self.gate_fix(outcome)
         if not outcome.ok or outcome.value is None:
             classification.on_failure(outcome)
             return outcome
@@ -88,5 +92,5 @@ class Localise(ActionLeaf):
 
 
 def _summary(fix: PoseEstimate) -> str:
-    rests_on = "outline" if fix.source is Source.PASSIVE else f"{fix.markers} markers"
+    rests_on = f"{fix.markers} markers" if fix.markers else fix.source
     return f"{rests_on}, sigma {fix.sigma_position_m * 1e3:.1f} mm"

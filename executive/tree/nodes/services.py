@@ -10,11 +10,11 @@ from executive.core.ports import Devices, Localizer
 from executive.core.rig import Rig
 from executive.core.types import (
     Call,
+    CameraView,
     Images,
     Outcome,
     PoseEstimate,
     Segment,
-    View,
 )
 
 if TYPE_CHECKING:  # only named here, so that a tree can be read, checked and drawn without them
@@ -29,7 +29,7 @@ class Journal(Protocol):
     def segment(self, segment: Segment | None) -> None: ...
     def waypoint(self, index: int, pose: PoseEstimate) -> None: ...
     def call(self, call: Call) -> None: ...
-    def views(self, views: tuple[View, ...], outcome: Outcome[object]) -> None: ...
+    def views(self, views: tuple[CameraView, ...], outcome: Outcome[object]) -> None: ...
     def picture(self, images: Images) -> None: ...
 
 

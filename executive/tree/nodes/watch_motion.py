@@ -8,6 +8,7 @@ import numpy as np
 
 from executive.core.ports import Action, LocaliseRequest
 from executive.core.types import (
+    Localisation,
     Outcome,
     PoseEstimate,
     Quality,
@@ -34,7 +35,7 @@ class WatchMotion(Leaf):
     )
 
     outcomes = (Reason.UNEXPECTED,)
-    _action: Action[PoseEstimate] | None = None
+    _action: Action[Localisation] | None = None
 
     def begin(self) -> None:
         self._predictions: dict[float, PoseEstimate] = {}
@@ -51,8 +52,8 @@ class WatchMotion(Leaf):
         if outcome is None:
             return None
         self._action = None
-        seen = outcome.value
-        return None if not outcome.ok or seen is None or unusable(seen, self._asked_s) else self._judge(seen)
+        seen = outcome.value.pose if outcome.ok and outcome.value is not None else None
+        return None if seen is None or unusable(seen, self._asked_s) else self._judge(seen)
 
     def halt(self) -> None:
         if self._action is not None:

@@ -94,7 +94,8 @@ def test_every_problem_of_a_scenario_is_told_at_once_with_its_place(folder):
     )
     assert problems_of("scenarios/dark.yaml") == [
         "scenarios/dark.yaml:3:7: got -1, expected greater than or equal to 0",
-        'scenarios/dark.yaml:4:7: got "ful", expected full or geometric; did you mean "full"?',
+        'scenarios/dark.yaml:4:7: got "ful", expected a tier of plain: full or geometric; '
+        'did you mean "full"?',
         'scenarios/dark.yaml:6:17: got the unknown key "sun_elevaton", expected sun_elevation; '
         'did you mean "sun_elevation"?',
         "scenarios/dark.yaml:6:53: got 30 without a unit, expected a length such as '30 mm'",
@@ -155,8 +156,12 @@ def test_problems_in_an_option_are_located_in_it(folder):
 
 def test_a_tier_that_the_backend_cannot_play_is_refused(folder):
     path = rewritten(folder, "backend: plain", "backend: poor")
-    assert problems_of(path) == ['scenarios/dark.yaml:1:1: got "full", expected a tier of poor: geometric']
-    assert resolve_scenario(path, tier="geometric").tier == "geometric"
+    assert problems_of(path, tier="full") == ['--tier:1:1: got "full", expected a tier of poor: geometric']
+
+
+def test_without_a_tier_the_backends_first_is_meant(folder):
+    assert resolve_scenario("scenarios/dark.yaml").tier == "full"
+    assert resolve_scenario(rewritten(folder, "backend: plain", "backend: poor")).tier == "geometric"
 
 
 def test_a_plugin_that_cannot_be_loaded_is_named(folder):

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from executive.core.types import PoseEstimate, Source
+from executive.core.types import PoseEstimate
 from executive.isc.attitude import quat_from_heading_tilt
 from executive.isc.gate import Reach
 
 
 def at(x=3.0, y=0.0, heading_deg=0.0, sigma=0.001):
     quat = quat_from_heading_tilt(math.radians(heading_deg), 0.0, 0.0)
-    return PoseEstimate(0.0, (x, y, 0.0), quat, np.eye(6) * sigma**2, Source.MARKERS)
+    return PoseEstimate(0.0, (x, y, 0.0), quat, np.eye(6) * sigma**2, "markers")
 
 
 @pytest.mark.parametrize(

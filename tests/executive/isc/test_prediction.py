@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from executive.core.types import PoseEstimate, Source
+from executive.core.types import PoseEstimate
 from executive.isc import attitude, correction, gate, motion, prediction
 from executive.isc.motion import (
     ADVANCE,
@@ -33,7 +33,7 @@ def pose(
         position_site_m=(x, y, 0.0),
         quat_site_body=attitude.quat_from_heading_tilt(heading, 0.0, 0.0),
         covariance=np.diag([sigma_m**2] * 3 + [1e-6, 1e-6, sigma_rad**2]),
-        source=Source.MARKERS,
+        source="markers",
         markers=4,
     )
 
@@ -174,7 +174,7 @@ def test_covariance_stays_symmetric_and_positive_over_a_long_trek() -> None:
     ],
 )
 def test_a_pose_that_is_no_number_or_old_says_nothing(change, why):
-    pose = PoseEstimate(101.0, (1.0, 2.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), Source.MARKERS)
+    pose = PoseEstimate(101.0, (1.0, 2.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), "markers")
     assert gate.unusable(replace(pose, **change), since_s=100.0) == why
 
 

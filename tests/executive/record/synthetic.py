@@ -18,8 +18,8 @@ from scipy.spatial.transform import Rotation
 from executive.core.types import (
     Point,
     PoseEstimate,
+    PoseSource,
     Segment,
-    Source,
 )
 from executive.record import (
     RunFigures,
@@ -168,7 +168,7 @@ class Story:
             (float(position[0]), float(position[1]), float(position[2])),
             tuple(float(q) for q in rotation.as_quat()),
             np.diag(sigma**2),
-            Source.MARKERS,
+            "markers",
             markers=4,
         ).on(self.segment)
         self.record.write(pose, r.time)
@@ -183,7 +183,11 @@ class Story:
             1 + driven_m * 20
         )
         guess = dataclasses.replace(
-            pose, time_s=self.rover.time, position_site_m=moved, covariance=grown, source=Source.PREDICTION
+            pose,
+            time_s=self.rover.time,
+            position_site_m=moved,
+            covariance=grown,
+            source=PoseSource.PREDICTION,
         )
         self.record.write(guess.on(self.segment), self.rover.time)
 

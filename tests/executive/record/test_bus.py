@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from executive.core.types import Point, PoseEstimate, Segment, Source
+from executive.core.types import Point, PoseEstimate, PoseSource, Segment
 from executive.record.along import AlongRoute
 from executive.record.bus import EventBus, harmless
 from executive.record.events import SegmentEvent, WaypointEvent
@@ -16,7 +16,7 @@ class Clock:
     now_s = 12.0
 
 
-def at(x, y, source=Source.MARKERS):
+def at(x, y, source="markers"):
 
     return PoseEstimate(0.0, (x, y, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), source)
 
@@ -41,7 +41,7 @@ def test_only_who_looks_on_may_raise():
 def test_progress_is_by_the_last_fix_on_the_segment_under_way():
     along = AlongRoute(ROUTE)
     assert (along.behind_m(), along.share()) == (0.0, 0.0)
-    for event in (SegmentEvent(ROUTE[1]), at(3.0, 1.0), at(3.0, 2.0, Source.PREDICTION)):
+    for event in (SegmentEvent(ROUTE[1]), at(3.0, 1.0), at(3.0, 2.0, PoseSource.PREDICTION)):
         along.hear(event, 0.0)
     assert along.behind_m() == pytest.approx(2.0)
     assert along.share() == pytest.approx(0.5)

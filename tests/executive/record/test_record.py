@@ -16,7 +16,6 @@ from executive.core.types import (
     PoseEstimate,
     Reason,
     Segment,
-    Source,
 )
 from executive.record import (
     History,
@@ -54,7 +53,7 @@ from executive.record.versions import versions
 
 SEGMENT = Segment(Point(1.0, 0.1), Point(2.0, -0.3), 0.03, 0.25, 0.02, 1)
 POSE = PoseEstimate(
-    12.0, (1.0, 2.0, 0.1), (0.0, 0.0, 0.6, 0.8), np.arange(36.0).reshape(6, 6) / 7, Source.MARKERS, markers=3
+    12.0, (1.0, 2.0, 0.1), (0.0, 0.0, 0.6, 0.8), np.arange(36.0).reshape(6, 6) / 7, "markers", markers=3
 ).on(SEGMENT)
 EVENTS = (
     Start("trip", "scenario: trip\n", 7, 1.0, "geometric", {"numpy": "2", "longarm": "1"}),

@@ -11,7 +11,6 @@ from executive.core.types import (
     Point,
     PoseEstimate,
     Segment,
-    Source,
 )
 from executive.record import (
     RunFigures,
@@ -43,7 +42,7 @@ SEGMENT = Segment(Point(0.0, 0.0), Point(1.0, 0.0), 0.03, 0.10, 0.02, 0)
 
 
 def estimate(time_s: float, position, quat=LEVEL, sigma: float = 0.01) -> PoseEstimate:
-    return PoseEstimate(time_s, position, quat, np.eye(6) * sigma**2, Source.MARKERS, markers=4)
+    return PoseEstimate(time_s, position, quat, np.eye(6) * sigma**2, "markers", markers=4)
 
 
 def run(tmp_path: Path, truth, events, figures=None):

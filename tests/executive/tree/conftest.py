@@ -16,7 +16,6 @@ from executive.core.types import (
     Outcome,
     PoseEstimate,
     Reason,
-    Source,
 )
 from executive.core.values import (
     INTEGER,
@@ -127,7 +126,7 @@ class ScriptedPool:
 
 def services(pool: Any = None) -> Any:
     """The few services that these leaves and a choice use."""
-    pose = PoseEstimate(0.0, (0.0, 0.0, 0.0), (0, 0, 0, 1), [[0.0] * 6] * 6, Source.MARKERS)
+    pose = PoseEstimate(0.0, (0.0, 0.0, 0.0), (0, 0, 0, 1), [[0.0] * 6] * 6, "markers")
     assessment = Assessment(0.0, {}, None, None)
     return SimpleNamespace(
         clock=Clock(1.0),

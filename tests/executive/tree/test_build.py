@@ -8,7 +8,6 @@ from executive.core.types import (
     PoseEstimate,
     Reason,
     Segment,
-    Source,
 )
 
 ROUTE = (
@@ -18,7 +17,7 @@ ROUTE = (
 
 
 def pose(y=0.0, segment=None):
-    estimate = PoseEstimate(0.0, (0.5, y, 0.0), (0, 0, 0, 1), [[0.0] * 6] * 6, Source.MARKERS)
+    estimate = PoseEstimate(0.0, (0.5, y, 0.0), (0, 0, 0, 1), [[0.0] * 6] * 6, "markers")
     return estimate.on(segment)
 
 

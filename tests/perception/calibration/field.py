@@ -12,7 +12,7 @@ import numpy as np
 
 from executive.core.rig import RigCalibration
 from perception.calibration import Landmark, Look, PointImages, RoverImages, Station, Survey, changed_rig
-from perception.frames.exposure import filter_snr_per_pair, pairs_needed, view_of
+from perception.frames.exposure import filter_snr_per_pair, pairs_needed, plate_view
 from perception.geometry.body import Transform
 from perception.geometry.chain import Chain, ChainState
 from perception.geometry.follow_up import pointing_at
@@ -136,7 +136,7 @@ class World:
 
 def centre_sigma_px(chain: Chain, state: ChainState) -> np.ndarray:
     """Standard deviation (2, 4) of marker centres, with the pairs that a localisation takes."""
-    pairs = pairs_needed(filter_snr_per_pair(chain.rig, view_of(chain, state)))
+    pairs = pairs_needed(filter_snr_per_pair(chain.rig, plate_view(chain, state)))
     covariance = centre_bounds(chain, state, pairs)
     return np.sqrt(np.einsum("cnii->cn", covariance) / 2 + FLOOR_PX**2)
 

@@ -7,8 +7,8 @@ from executive.core.types import Centres, HeadReading, Shot
 from perception.calibration import NAMES, Look, calibrate, changed_rig
 from perception.calibration.bundle import Bundle
 from perception.calibration.parameters import prior_sigmas
-from perception.calibration.sightings import Sightings
 from perception.calibration.start import first_guess
+from perception.calibration.target_images import TargetImages
 from perception.calibration.unknowns import Bearing, turn_rate
 from perception.geometry.chain import Chain
 from perception.geometry.rotation import exp_map
@@ -28,7 +28,7 @@ TINY = Field(
 
 def bundle(seed=3):
     seen = survey(prior_sigmas(), np.random.default_rng(seed), TINY)
-    sightings = Sightings.of(seen, 4)
+    sightings = TargetImages.of(seen, 4)
     unknowns = first_guess(BELIEVED, seen, sightings, len(NAMES))
     return Bundle(BELIEVED, seen, sightings, unknowns, prior_sigmas(), 293.0)
 
@@ -53,8 +53,8 @@ def test_residuals_of_the_truth_are_noise_alone():
 
 def test_a_point_that_one_image_shows_is_left_out_unless_it_is_a_landmark():
     seen = survey(prior_sigmas(), np.random.default_rng(3), TINY)
-    images = Sightings.of(seen, 4).images_of_targets()[8:]
-    names = Sightings.of(seen, 4).names
+    images = TargetImages.of(seen, 4).images_of_targets()[8:]
+    names = TargetImages.of(seen, 4).names
     free = [count for name, count in zip(names, images, strict=True) if name not in seen.landmarks]
     assert 1 not in free
 

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from executive.core.rig import RigCalibration
 from perception.frames.exposure import (
-    View,
+    PlateView,
     filter_snr_per_pair,
     pairs_needed,
-    view_of,
+    plate_view,
 )
 from perception.frames.psf import marker_spread
 from perception.geometry.body import Transform
@@ -85,22 +85,22 @@ def test_overlap_ends_where_one_camera_ends():
 
 def test_pairs_grow_with_range_and_with_a_slanting_view():
     rig = RigCalibration()
-    counts = [pairs_needed(filter_snr_per_pair(rig, View(r, 0.5))) for r in (1.6, 3.0, 5.0, 10.0)]
+    counts = [pairs_needed(filter_snr_per_pair(rig, PlateView(r, 0.5))) for r in (1.6, 3.0, 5.0, 10.0)]
     assert counts == sorted(set(counts))
-    slant = pairs_needed(filter_snr_per_pair(rig, View(5.0, 0.05)))
-    assert slant > pairs_needed(filter_snr_per_pair(rig, View(5.0, 0.9)))
+    slant = pairs_needed(filter_snr_per_pair(rig, PlateView(5.0, 0.05)))
+    assert slant > pairs_needed(filter_snr_per_pair(rig, PlateView(5.0, 0.9)))
     assert pairs_needed(0.0) == np.inf
 
 
 def test_brightest_pixel_has_snr_1_where_the_calibration_says():
     rig = RigCalibration()
     spread = marker_spread(rig, rig.sensor.snr_1_range_m)
-    filtered = filter_snr_per_pair(rig, View(rig.sensor.snr_1_range_m, 1.0))
+    filtered = filter_snr_per_pair(rig, PlateView(rig.sensor.snr_1_range_m, 1.0))
     assert filtered * spread.peak / np.sqrt(spread.energy) == pytest.approx(1.0)
 
 
 def test_view_angle_opens_when_the_cabin_leans_towards_the_head():
     away = Transform(exp_map(np.array([0, 0, 0.0])), np.array([4.0, 0.0, 0.0]))
     head = pointing_at(CHAIN, away.position_m)
-    flat, leaning = (view_of(CHAIN, ChainState(away, head, (0.0, cabin))) for cabin in (0.0, 0.6))
+    flat, leaning = (plate_view(CHAIN, ChainState(away, head, (0.0, cabin))) for cabin in (0.0, 0.6))
     assert leaning.cosine > flat.cosine + 0.3

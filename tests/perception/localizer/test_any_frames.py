@@ -14,10 +14,10 @@ from executive.core.types import (
 )
 from perception.frames.codes import coded_sequence
 from perception.frames.difference import led_sequence
-from perception.markers.choice import Choice, JointFix, Rejection
-from perception.markers.look import look_at
+from perception.markers.marker_fix import MarkerFix, Rejection
 from perception.markers.plausibility import choose
-from perception.markers.shot_stack import Pile
+from perception.markers.shot_stack import ShotStack
+from perception.markers.single import find_candidates
 from perception.outline.moving_rover import moving_rover
 from tests.perception.far_trials import draw, windows_of
 
@@ -37,7 +37,7 @@ def near_answer(counts, leds=None):
     """As the localizer takes it: a problem of the frames is a refusal."""
     leds = leds or led_sequence(4, 1)
     said = NEAR.said
-    seen = look_at(RIG, images(NEAR, leds, counts), 3.0)
+    seen = find_candidates(RIG, images(NEAR, leds, counts), 3.0)
     if seen.problem:
         return Rejection(seen.problem, 0)
     chain, prior = NEAR.true.chain, NEAR.expectation.prior
@@ -45,11 +45,11 @@ def near_answer(counts, leds=None):
 
 
 def far_answer(counts, leds=None):
-    pile = Pile(FAR.true.chain)
-    pile.add(images(FAR, leds or coded_sequence(4, 8), counts))
-    if pile.problem:
-        return Rejection(pile.problem, 0)
-    return pile.answer(FAR.expectation, FAR.tilt_rad, 1.0)
+    shots = ShotStack(FAR.true.chain)
+    shots.add(images(FAR, leds or coded_sequence(4, 8), counts))
+    if shots.problem:
+        return Rejection(shots.problem, 0)
+    return shots.fix(FAR.expectation, FAR.tilt_rad, 1.0)
 
 
 def stack(window: Window, frames: int, content: str, rng) -> np.ndarray:
@@ -145,7 +145,7 @@ def test_what_is_no_stack_of_grey_frames_is_refused_with_what_was_expected(how, 
     rng = np.random.default_rng(3)
     for setting, frames, answer in ((NEAR, 6, near_answer), (FAR, 16, far_answer)):
         good = [stack(w, frames, "faint noise", rng) for w in windows_of(setting)]
-        assert not isinstance(answer(tuple(good)), Choice | JointFix)
+        assert not isinstance(answer(tuple(good)), MarkerFix)
         good[side] = damage(good[side], how)
         with pytest.raises(ValueError, match=r"got .*expected"):
             answer(tuple(good))
@@ -168,10 +168,10 @@ def test_one_camera_for_two_is_refused():
 
 def test_shots_of_different_windows_are_not_piled_up():
     rng, leds = np.random.default_rng(6), coded_sequence(4, 8)
-    pile = Pile(FAR.true.chain)
-    pile.add(images(FAR, leds, tuple(stack(w, 16, "faint noise", rng) for w in windows_of(FAR))))
+    shots = ShotStack(FAR.true.chain)
+    shots.add(images(FAR, leds, tuple(stack(w, 16, "faint noise", rng) for w in windows_of(FAR))))
     with pytest.raises(ValueError, match=r"expected .* as before"):
-        pile.add(
+        shots.add(
             Images(
                 0.0,
                 Shot(leds),

@@ -103,7 +103,7 @@ def test_a_flickering_pixel_has_less_say_and_a_constant_one_none():
     assert sigma[20, 20] > 1e5
 
 
-def test_frames_of_a_trembling_head_are_brought_onto_one_another():
+def test_frames_of_a_vibrating_head_are_aligned():
     rng = np.random.default_rng(5)
     ground = 400 + 60 * gaussian_filter(rng.standard_normal((80, 120)), 1.5) / 0.19
     off = rng.uniform(-2.5, 2.5, (16, 2))
@@ -119,7 +119,7 @@ def test_frames_of_a_trembling_head_are_brought_onto_one_another():
 
 
 @pytest.mark.parametrize("frames", [5, 9, 64])
-def test_the_mean_pointing_of_few_trembling_frames_is_as_little_known_as_is_said(frames: int):
+def test_the_mean_pointing_is_as_uncertain_as_is_said(frames: int):
     off = np.random.default_rng(7).standard_normal((4000, frames, 2))
     mean = off.mean(axis=1)
     said = np.array([unknown_px(one - middle) for one, middle in zip(off, mean, strict=True)])

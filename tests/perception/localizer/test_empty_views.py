@@ -8,9 +8,9 @@ from executive.core.types import (
     Images,
     Point,
     PoseEstimate,
+    PoseSource,
     Segment,
     Shot,
-    Source,
     Window,
 )
 from perception.geometry.chain import Chain
@@ -32,7 +32,7 @@ FULL = (Window(0, 0, 1024, 1024),) * 2
 
 def pose(x, y, sigma_m=0.02):
     covariance = np.diag([sigma_m**2] * 2 + [1e-4] + [1e-4] * 3)
-    return PoseEstimate(0.0, (x, y, 0.0), (0.0, 0.0, 0.0, 1.0), covariance, Source.PREDICTION)
+    return PoseEstimate(0.0, (x, y, 0.0), (0.0, 0.0, 0.0, 1.0), covariance, PoseSource.PREDICTION)
 
 
 def view(rover, looking_at, time_s=0.0):

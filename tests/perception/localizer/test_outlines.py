@@ -14,14 +14,13 @@ from executive.core.types import (
     Quality,
     Reason,
     Segment,
-    Source,
 )
 from perception.frames.routine import Routine
 from perception.geometry.rotation import log_map, matrix_from_quat, quat_from_matrix
 from perception.localizer.aim import Aim
 from perception.localizer.empty_views import EmptyView, EmptyViews
 from perception.localizer.localizer import LedStereoLocalizer
-from perception.localizer.outlines import Found, Outlines
+from perception.localizer.outlines import OutlineFix, Outlines
 from perception.localizer.scouting import UNLIT
 from tests.perception.passive_trials import Wrong, draw
 from tests.perception.robot import After, Robot
@@ -73,7 +72,7 @@ def test_the_way_ahead_is_looked_at_once():
     r = robot()
     found = localizer(r)
     outcome = r.run(found.locate(ask(r, segment=sideways(r))))
-    assert outcome.value.source is Source.MARKERS
+    assert outcome.value.pose.source == "markers"
     assert 1 <= len(unlit(r)) <= 2
     looks = len(unlit(r))
     r.run(found.locate(ask(r, segment=sideways(r))))
@@ -108,12 +107,12 @@ def test_a_dark_rover_is_found_by_its_outline_where_the_ground_was_seen_before()
     r, found = seen_ahead()
     outcome = r.run(found.locate(ask(r, r.predicted((0.03, -0.02), 0.05))))
     assert outcome.ok
-    assert outcome.value.source is Source.PASSIVE
-    assert outcome.value.markers == 0
+    assert outcome.value.pose.source == "passive"
+    assert outcome.value.pose.markers == 0
     body = r.state.site_body
-    turn = log_map(body.rotation @ matrix_from_quat(outcome.value.quat_site_body).T)
-    off = np.concatenate([body.position_m - np.array(outcome.value.position_site_m), turn])
-    assert off @ np.linalg.solve(outcome.value.covariance, off) < 22
+    turn = log_map(body.rotation @ matrix_from_quat(outcome.value.pose.quat_site_body).T)
+    off = np.concatenate([body.position_m - np.array(outcome.value.pose.position_site_m), turn])
+    assert off @ np.linalg.solve(outcome.value.pose.covariance, off) < 22
     assert "outline against the view of" in outcome.detail
     assert "0 of 4 markers" in outcome.detail
 
@@ -121,7 +120,7 @@ def test_a_dark_rover_is_found_by_its_outline_where_the_ground_was_seen_before()
 def test_markers_that_show_are_never_replaced():
     r, found = seen_ahead()
     r.hidden = set()
-    assert r.run(found.locate(ask(r))).value.source is Source.MARKERS
+    assert r.run(found.locate(ask(r))).value.pose.source == "markers"
 
 
 def test_a_place_never_seen_empty_is_refused_in_words():
@@ -204,10 +203,10 @@ def in_images(setting, images=None):
 
 def test_in_images_the_outline_gives_the_pose(setting):
     found = in_images(setting)
-    assert isinstance(found, Found)
+    assert isinstance(found, OutlineFix)
     off = setting.body.position_m - np.array(found.pose.position_site_m)
     assert np.linalg.norm(off) < 0.05
-    assert found.pose.source is Source.PASSIVE
+    assert found.pose.source == "passive"
 
 
 def test_frames_that_are_no_two_alike_are_refused(setting):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from executive.core.rig import RigCalibration, SensorCalibration
-from perception.frames.exposure import View, flux_expected
+from perception.frames.exposure import PlateView, flux_expected
 from perception.frames.psf import marker_spread
 from perception.markers.fisher import (
     centre_bound,
@@ -22,7 +22,7 @@ from tests.perception.far_trials import Nuisance, draw, run_trial
 )
 def test_the_bound_of_a_centre_is_what_others_computed_for_this_rig_without_defocus(range_m, bound_px):
     sharp = replace(RigCalibration(), sensor=SensorCalibration(defocus_px_m=0.0))
-    flux, noise = flux_expected(sharp, View(range_m, 1.0)), np.sqrt(2.0) * sharp.sensor.noise_counts
+    flux, noise = flux_expected(sharp, PlateView(range_m, 1.0)), np.sqrt(2.0) * sharp.sensor.noise_counts
     places = np.random.default_rng(0).uniform(-0.5, 0.5, (100, 2))
     bounds = [centre_bound(marker_spread(sharp, range_m), flux, noise, place)[0, 0] for place in places]
     assert np.sqrt(np.mean(bounds)) == pytest.approx(bound_px, rel=0.05)

@@ -6,7 +6,7 @@ import pytest
 from perception.geometry.pose import Prior, roll_pitch
 from perception.geometry.rotation import log_map
 from perception.markers.centres import Detection
-from perception.markers.choice import Choice, Rejection
+from perception.markers.marker_fix import MarkerFix, Rejection
 from perception.markers.plausibility import choose
 from tests.perception.synthetic import scene
 
@@ -31,12 +31,12 @@ def chosen(true, candidates, rng, prior_sigma=(0.03, 0.1)):
     return choose(true.chain, candidates, true.state.head_rad, true.state.joints_rad, tilt, prior)
 
 
-def is_true(choice, true):
+def is_true(fix, true):
     """Within six of its own standard deviations of the truth, in place and heading."""
-    body, truth = choice.fix.state.site_body, true.state.site_body
+    body, truth = fix.fit.state.site_body, true.state.site_body
     turn = log_map(truth.rotation @ body.rotation.T)
     off = np.concatenate([truth.position_m - body.position_m, turn])
-    return off @ np.linalg.solve(choice.fix.covariance, off) < 36
+    return off @ np.linalg.solve(fix.fit.covariance, off) < 36
 
 
 @pytest.fixture
@@ -50,11 +50,10 @@ def rng():
 
 
 def test_four_clean_markers_are_taken_at_the_first_set(true, rng):
-    choice = chosen(true, detections(true, rng), rng)
-    assert isinstance(choice, Choice)
-    assert choice.markers == 4
-    assert choice.sets_tried == 1
-    assert is_true(choice, true)
+    fix = chosen(true, detections(true, rng), rng)
+    assert isinstance(fix, MarkerFix)
+    assert fix.markers == 4
+    assert is_true(fix, true)
 
 
 @pytest.mark.parametrize("missing", [(0,), (3,), (0, 1), (1, 3)])
@@ -62,10 +61,10 @@ def test_missing_markers_are_done_without(true, rng, missing):
     candidates = detections(true, rng)
     for m in missing:
         candidates[0][m] = []
-    choice = chosen(true, candidates, rng)
-    assert isinstance(choice, Choice)
-    assert set(choice.shining) == set(range(4)) - set(missing)
-    assert is_true(choice, true)
+    fix = chosen(true, candidates, rng)
+    assert isinstance(fix, MarkerFix)
+    assert set(fix.shining) == set(range(4)) - set(missing)
+    assert is_true(fix, true)
 
 
 def test_one_marker_is_too_few(true, rng):
@@ -88,10 +87,10 @@ def test_brighter_reflections_beside_true_markers_are_passed_over(true):
             for c in (0, 1):
                 glint = Detection(true.uv_px[c, m] + shift, SIGMA_PX**2 * np.eye(2), 20.0, 1.0)
                 candidates[c][m].insert(0, glint)
-        choice = chosen(true, candidates, rng)
-        assert isinstance(choice, Choice)
-        assert choice.markers == 4
-        assert is_true(choice, true)
+        fix = chosen(true, candidates, rng)
+        assert isinstance(fix, MarkerFix)
+        assert fix.markers == 4
+        assert is_true(fix, true)
 
 
 def test_a_reflection_in_place_of_a_marker_never_gives_a_false_pose(true):
@@ -103,11 +102,11 @@ def test_a_reflection_in_place_of_a_marker_never_gives_a_false_pose(true):
         shift = rng.uniform(4, 40, 2) * rng.choice([-1, 1], 2)
         for c in (0, 1):
             candidates[c][m] = [Detection(true.uv_px[c, m] + shift, SIGMA_PX**2 * np.eye(2), 8.0, 1.0)]
-        choice = chosen(true, candidates, rng)
-        if isinstance(choice, Choice):
+        fix = chosen(true, candidates, rng)
+        if isinstance(fix, MarkerFix):
             accepted += 1
-            assert is_true(choice, true)
-            assert m not in set(choice.shining)
+            assert is_true(fix, true)
+            assert m not in set(fix.shining)
     assert accepted >= 36
 
 
@@ -117,9 +116,9 @@ def test_an_outlier_in_one_camera_never_gives_a_false_pose(true):
         candidates = detections(true, rng)
         c, m = int(rng.integers(2)), int(rng.integers(4))
         candidates[c][m] = [stray(rng, true.uv_px[c, m])]
-        choice = chosen(true, candidates, rng)
-        assert isinstance(choice, Choice)
-        assert is_true(choice, true)
+        fix = chosen(true, candidates, rng)
+        assert isinstance(fix, MarkerFix)
+        assert is_true(fix, true)
 
 
 @pytest.mark.parametrize("pair", [(0, 1), (1, 2), (0, 2), (1, 3)])
@@ -129,10 +128,10 @@ def test_a_swapped_identity_never_gives_a_false_pose(true, rng, pair, prior_sigm
     a, b = pair
     for c in (0, 1):
         candidates[c][a], candidates[c][b] = candidates[c][b], candidates[c][a]
-    choice = chosen(true, candidates, rng, prior_sigma)
-    if isinstance(choice, Choice):
-        assert is_true(choice, true)
-        assert choice.note == f"LEDs swapped: {a} with {b}"
+    fix = chosen(true, candidates, rng, prior_sigma)
+    if isinstance(fix, MarkerFix):
+        assert is_true(fix, true)
+        assert fix.note == f"LEDs swapped: {a} with {b}"
 
 
 def test_noise_alone_is_rejected(true):

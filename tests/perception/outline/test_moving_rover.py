@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from executive.core.types import Window
-from perception.frames.exposure import view_of
+from perception.frames.exposure import plate_view
 from perception.outline.moving_rover import moving_rover
 from tests.perception.motion_trials import Setting, draw, judge
 
@@ -21,7 +21,7 @@ def look(range_m: float, *key: int, **how) -> Setting:
 
 
 def find(s: Setting):
-    return moving_rover(s.chain, s.expectation, s.data, view_of(s.chain, s.expectation.state).range_m)
+    return moving_rover(s.chain, s.expectation, s.data, plate_view(s.chain, s.expectation.state).range_m)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from executive.core.devices import INCLINOMETER
 from executive.core.ports import LocaliseRequest
-from executive.core.types import PoseEstimate, Quality, Source
+from executive.core.types import PoseEstimate, PoseSource, Quality
 from executive.testing import OverheadLocalizer
 from proving.faults.estimation import (
     Bias,
@@ -20,7 +20,7 @@ from proving.faults.estimation import (
 )
 from proving.faults.parameters import Nothing
 
-ANYWHERE = PoseEstimate(0.0, (3.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), Source.PRIOR)
+ANYWHERE = PoseEstimate(0.0, (3.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), PoseSource.PRIOR)
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def locate(bench):
         robot = bench.robot
         localizer = fault.wrap_localizer(OverheadLocalizer(robot.devices, robot.rig, robot.clock), bench.cue)
         request = LocaliseRequest(Quality.PRECISE, ANYWHERE)
-        return lambda: bench.finish(localizer.locate(request)).value
+        return lambda: bench.finish(localizer.locate(request)).value.pose
 
     return behind
 

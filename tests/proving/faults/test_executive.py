@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from executive.core.types import PoseEstimate, Source
+from executive.core.types import PoseEstimate
 from executive.record import History, events
 from executive.record.reader import is_complete
 from tests.proving.faults.scenario import complaint, run, write
@@ -30,7 +30,7 @@ def changes(done, name):
 
 def test_a_node_forced_before_its_tick_does_nothing(tmp_path):
     done = run(tmp_path, forced("failure", "before"))
-    fixes = [at for at in done.record.all(PoseEstimate) if at.event.source is Source.MARKERS]
+    fixes = [at for at in done.record.all(PoseEstimate) if at.event.is_fix]
     assert max(at.time_s for at in fixes) < 60.0
     assert done.outcome == "help"
     assert done.rows["node_forced"].fired

@@ -7,7 +7,6 @@ from executive.core.types import (
     Call,
     PoseEstimate,
     Reason,
-    Source,
 )
 from executive.record import events
 from proving.inject.onsets import Onset, Sightings
@@ -92,5 +91,5 @@ def test_a_node_that_ends_in_the_tick_it_began_counts_as_entered():
 
 
 def test_believed_poses_are_signals():
-    pose = PoseEstimate(0.0, (3.0, 0.5, 0.0), (0, 0, 0, 1), np.eye(6), Source.MARKERS)
+    pose = PoseEstimate(0.0, (3.0, 0.5, 0.0), (0, 0, 0, 1), np.eye(6), "markers")
     assert due_times(onset(when="x > 2.9 m and y < 1 m"), [(0, None), (1, pose)]) == [1]

@@ -6,7 +6,7 @@ import pytest
 
 from executive.cli import invoke
 from executive.core import registry
-from executive.core.types import PoseEstimate, Source
+from executive.core.types import PoseEstimate
 from executive.record import History, events
 from executive.run.app import RunOptions, run
 from executive.run.fault import FAULT_KIND, load_fault
@@ -156,7 +156,7 @@ def test_a_fault_that_comes_and_goes_acts_only_while_it_is_there(finished):
         "  - frozen_frame: {}\n    from: {time: 3 min}\n"
         "    profile: {intermittent: {period: 4 min, duty: 25 %}}\n"
     )
-    fixes = [at.time_s - 180.0 for at in record.all(PoseEstimate) if at.event.source is Source.MARKERS]
+    fixes = [at.time_s - 180.0 for at in record.all(PoseEstimate) if at.event.is_fix]
     assert any(t > 240.0 for t in fixes)
     assert not any(2.0 < t % 240.0 < 58.0 for t in fixes if t > 0)
 

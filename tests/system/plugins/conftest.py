@@ -23,12 +23,10 @@ ADDED = {
     "files": ("recipe", "RECIPE"),
     "reporters": ("recipe", "REPORTER"),
     "commands": ("greet", "greet"),
-    "localizers": ("overhead_too", "overhead_too"),
+    "localizers": ("overhead_too", "OVERHEAD_TOO"),
 }
 """Kind → the name by which the stranger adds one, and the object. A new kind joins by one line."""
 WAYS = ("entry points", "module", "project")
-NOT_SCANNED = {"localizers"}
-"""Kinds whose type does not tell what an object is: they need an entry point."""
 
 SCENARIO = """\
 scenario: outside

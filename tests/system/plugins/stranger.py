@@ -23,6 +23,7 @@ from longarm import (
     In,
     InstrumentSpec,
     Leaf,
+    LocalizerSpec,
     Out,
     Outcome,
     Policy,
@@ -131,11 +132,15 @@ def greet():
     click.echo("hello from outside")
 
 
-def overhead_too(devices, rig, clock):
-    """The overhead view under another name."""
+def _overhead(request):
     from executive.testing import OverheadLocalizer
 
-    return OverheadLocalizer(devices, rig, clock)
+    return OverheadLocalizer(request.devices, request.rig, request.clock)
+
+
+OVERHEAD_TOO = LocalizerSpec(
+    "overhead_too", "The overhead view under another name.", sources=("overhead",), make=_overhead
+)
 
 
 __all__ = [
@@ -143,6 +148,7 @@ __all__ = [
     "HUM",
     "LAST_FIRST",
     "MASS",
+    "OVERHEAD_TOO",
     "RECIPE",
     "REPORTER",
     "ROUGH",

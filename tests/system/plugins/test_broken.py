@@ -49,7 +49,7 @@ BROKEN = {
         "reporter recipe: got a builtin_function_or_method, expected a Reporter",
     ),
     "commands": ("greet", "print", "command greet: got a builtin_function_or_method, expected a Command"),
-    "localizers": ("overhead_too", "3", "localizer overhead_too: got an int, expected a Callable"),
+    "localizers": ("overhead_too", "3", "localizer overhead_too: got an int, expected a LocalizerSpec"),
 }
 """Kind → name, what stands there instead, and what is said of it. A new kind joins by one line."""
 HEAD = "from pathlib import Path\nfrom longarm import *\n"

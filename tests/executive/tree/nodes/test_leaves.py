@@ -17,10 +17,10 @@ from executive.core.types import (
     Outcome,
     Point,
     PoseEstimate,
+    PoseSource,
     Quality,
     Reason,
     Segment,
-    Source,
     TetherReading,
     TiltReading,
 )
@@ -79,7 +79,7 @@ class Bench:
             (2.0, y_m, 0.0),
             quat_from_heading_tilt(heading_rad, 0.0, 0.0),
             np.diag([1e-6] * 6),
-            Source.PRIOR,
+            PoseSource.PRIOR,
         )
         return Classification(
             prior,

@@ -15,7 +15,7 @@ Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
-class Sightings:
+class TargetImages:
     """N pairs of look and target; targets are the markers at station 0, 1, ..., then the named points.
 
     `look` and `target` (N,); `uv_px` (2, N, 2); `sigma_px` (2, N); `seen` (2, N): the images that count.
@@ -29,7 +29,7 @@ class Sightings:
     names: tuple[str, ...]
 
     @classmethod
-    def of(cls, survey: Survey, markers: int) -> Sightings:
+    def of(cls, survey: Survey, markers: int) -> TargetImages:
         """All images; a point of unknown place that only one image shows says nothing and is left out."""
         names = tuple(sorted({name for look in survey.looks if look.points for name in look.points.names}))
         number = {name: len(survey.stations) * markers + i for i, name in enumerate(names)}
@@ -56,7 +56,7 @@ class Sightings:
         every = cls(np.array(look), np.array(target), uv_px, sigma_px, seen, names)
         return every._without_lone_points(survey, markers)
 
-    def _without_lone_points(self, survey: Survey, markers: int) -> Sightings:
+    def _without_lone_points(self, survey: Survey, markers: int) -> TargetImages:
         known = len(survey.stations) * markers
         lone = self.images_of_targets() < 2
         lone[:known] = False
@@ -64,10 +64,10 @@ class Sightings:
             lone[known + i] &= name not in survey.landmarks
         return self.only(~lone[self.target])
 
-    def only(self, counts: Mask) -> Sightings:
+    def only(self, counts: Mask) -> TargetImages:
         """The same with images (2, N) or pairs (N,) that do not count any more."""
         seen = np.asarray(self.seen & counts)
-        return Sightings(self.look, self.target, self.uv_px, self.sigma_px, seen, self.names)
+        return TargetImages(self.look, self.target, self.uv_px, self.sigma_px, seen, self.names)
 
     def images_of_targets(self) -> Indices:
         """How many images count for each target."""

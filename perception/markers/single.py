@@ -1,15 +1,16 @@
-"""From what the cameras returned to marker candidates: images and geometric centres meet here."""
+"""Each marker seen by itself: from what the cameras returned to candidates, and to the fix that they give."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.rig import RigCalibration
-from executive.core.types import Array, Centres, Images
+from executive.core.types import Array, Centres, Images, Vec2
 from perception.frames.difference import difference
+from perception.frames.exposure import plate_view
 from perception.frames.psf import marker_spread
 from perception.frames.shots import (
     blackness,
@@ -20,8 +21,15 @@ from perception.frames.shots import (
     stuck_pixels,
 )
 from perception.frames.similarity import compare
+from perception.frames.vibration import shaken
+from perception.frames.views import Pictures
+from perception.geometry.chain import Chain
+from perception.geometry.prediction import Expectation
 from perception.markers.centres import Detection, find_markers
-from perception.markers.choice import Candidates
+from perception.markers.circumstances import Candidates
+from perception.markers.marker_fix import Rejection, with_note
+from perception.markers.observation import Observation
+from perception.markers.plausibility import choose
 
 FALSE_ALARM_RATE = 0.2  # per window and LED; high, as the joint check comes after
 
@@ -30,16 +38,16 @@ _NAMES = ("left", "right")
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class SeenSingly:
     """Candidates [camera][marker], the dark images, and what makes the frames unusable (or empty).
 
     A camera that shows nothing usable has no candidates at all, `[]`, and `note` says why; if neither does,
-    that is the `problem`. `unknown_px` is for `frames.vibration.shaken`: how little is known of where the
-    head pointed while it trembled.
+    that is the `problem`. `unknown_px` is for `frames.vibration.shaken`: how little is known of where a
+    vibrating head pointed.
     """
 
     candidates: Candidates
-    reference: tuple[NDArray[np.float32], NDArray[np.float32]] | None
+    dark: Pictures | None
     problem: str = ""
     note: str = ""
     unknown_px: tuple[float, ...] = ()
@@ -55,25 +63,42 @@ class Look:
         return uv
 
 
-def look_at(rig: RigCalibration, data: Images | Centres, range_m: float) -> Look:
+def single_observation(
+    chain: Chain, data: Images | Centres, pairs: int, expectation: Expectation, tilt_rad: Vec2
+) -> Observation:
+    """What one shot of `pairs` on/off pairs a marker shows of the expected rover.
+
+    ValueError unless the frames are as ordered (perception.frames.shots).
+    """
+    head_rad = (data.head.pan_rad, data.head.tilt_rad)
+    state = replace(expectation.state, head_rad=head_rad)
+    seen = find_candidates(chain.rig, data, plate_view(chain, state).range_m)
+    chain = shaken(chain, seen.unknown_px)
+    fix = choose(chain, seen.candidates, head_rad, state.joints_rad, tilt_rad, expectation.prior)
+    fix = with_note(fix, seen.note)
+    detected_px = seen.strongest_px if isinstance(fix, Rejection) else fix.detected_px
+    return Observation(data, pairs, len(data.shot.leds), seen.problem, fix, seen.dark, detected_px)
+
+
+def find_candidates(rig: RigCalibration, data: Images | Centres, range_m: float) -> SeenSingly:
     """Marker candidates in what the cameras returned, markers expected at about `range_m`.
 
     ValueError unless the frames are as ordered (perception.frames.shots).
     """
     if isinstance(data, Centres):
-        return Look(_given(data), None)
+        return SeenSingly(_given(data), None)
     check_frames(data, rig.sensor)
     cameras = [_detect(rig, data, camera, range_m) for camera in (0, 1)]
-    black = blackness((float(np.median(cameras[0].reference)), float(np.median(cameras[1].reference))))
+    black = blackness((float(np.median(cameras[0].dark)), float(np.median(cameras[1].dark))))
     problems = [dark or camera.problem for dark, camera in zip(black, cameras, strict=True)]
-    said = "; ".join(f"{name} camera: {why}" for name, why in zip(_NAMES, problems, strict=True) if why)
+    named = "; ".join(f"{name} camera: {why}" for name, why in zip(_NAMES, problems, strict=True) if why)
     blind = all(problems)
     candidates = [
         [] if why and not blind else camera.candidates for camera, why in zip(cameras, problems, strict=True)
     ]
-    reference = cameras[0].reference, cameras[1].reference
+    dark = cameras[0].dark, cameras[1].dark
     unknown = tuple(camera.unknown_px for camera in cameras)
-    return Look(candidates, reference, said if blind else "", "" if blind else said, unknown)
+    return SeenSingly(candidates, dark, named if blind else "", "" if blind else named, unknown)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +106,7 @@ class _Seen:
     """One camera's candidates by marker, dark image, problem, and how little the pointing is known [px]."""
 
     candidates: list[list[Detection]]
-    reference: NDArray[np.float32]
+    dark: NDArray[np.float32]
     problem: str
     unknown_px: float = 0.0
 

@@ -9,14 +9,14 @@ from scipy.special import ndtr
 
 from executive.core.rig import RigCalibration
 from perception.frames.difference import Difference
-from perception.frames.exposure import view_of
+from perception.frames.exposure import plate_view
 from perception.frames.psf import marker_spread
 from perception.geometry.chain import STATE_SIZE
 from perception.geometry.pose import Readings, Sighting
 from perception.kernels.climb import point_at
 from perception.markers.false_alarms import joint_threshold, log_distinct_poses, unit_information
 from perception.markers.likelihood import (
-    Evidence,
+    MarkerPatches,
     most_likely,
     place_of,
     task_of,
@@ -42,7 +42,7 @@ def readings(setting):
 
 @pytest.fixture(scope="module")
 def spread(setting):
-    return marker_spread(setting.true.chain.rig, view_of(setting.true.chain, setting.said).range_m)
+    return marker_spread(setting.true.chain.rig, plate_view(setting.true.chain, setting.said).range_m)
 
 
 def threshold(setting, readings, spread, volume=0.1, rate=1e-3):
@@ -76,11 +76,11 @@ def test_the_covariance_of_a_faint_rover_allows_for_the_tails_of_its_peak(settin
     """Against a chain of random steps over states and flux, which knows nothing of curvatures."""
     chain, state = setting.true.chain, setting.said
     exact = replace(readings, measured=readings.measured._replace(encoder_rad=state.angles_rad))
-    evidence, flux = _noiseless(chain, state, spread, snr=8.0)
-    peak = most_likely(chain, evidence, exact, state, np.full(4, flux), shared=True)
-    mean, told = posterior(chain, evidence, exact, peak, shared=True)
+    patches, flux = _noiseless(chain, state, spread, snr=8.0)
+    peak = most_likely(chain, patches, exact, state, np.full(4, flux), shared=True)
+    mean, told = posterior(chain, patches, exact, peak, shared=True)
 
-    walked = _walk(chain, evidence, exact, peak, np.random.default_rng(5), 12000)
+    walked = _walk(chain, patches, exact, peak, np.random.default_rng(5), 12000)
     free = [0, 1, 5]
     sigma = walked[:, free].std(axis=0)
     np.testing.assert_allclose(np.sqrt(np.diag(told))[free], sigma, rtol=0.15)
@@ -89,9 +89,9 @@ def test_the_covariance_of_a_faint_rover_allows_for_the_tails_of_its_peak(settin
     assert (np.abs(off[:2] - walked[:, :2].mean(axis=0)) < 0.3 * sigma[:2]).all()
 
 
-def _walk(chain, evidence, readings, peak, rng, count):
+def _walk(chain, patches, readings, peak, rng, count):
     """Steps (count, 11) of state and flux from the peak, by Metropolis's rule."""
-    task = task_of(chain, evidence, readings, peak.flux_counts, shared=True)
+    task = task_of(chain, patches, readings, peak.flux_counts, shared=True)
 
     def value(s):
         return point_at(task, place_of(peak.state.moved(s[:10]), peak.flux_counts + s[10])).value / 2
@@ -114,8 +114,10 @@ def _noiseless(chain, state, spread, snr):
     corners = [tuple(int(x) for x in np.floor(c.min(axis=0)) - 20) for c in uv]
     images = []
     for camera, corner in zip(uv, corners, strict=True):
-        spots = [flux * spot((60, 60), *(place - corner), view_of(chain, state).range_m) for place in camera]
+        spots = [
+            flux * spot((60, 60), *(place - corner), plate_view(chain, state).range_m) for place in camera
+        ]
         images.append(np.array(spots, dtype=np.float32))
     ones = np.ones_like(images[0])
     differences = [Difference(i, ones, ones[0], 100) for i in images]
-    return Evidence.of(differences, corners, spread, np.ones((2, 4))), flux
+    return MarkerPatches.of(differences, corners, spread, np.ones((2, 4))), flux
