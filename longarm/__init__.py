@@ -1,6 +1,6 @@
 """What authors of plug-ins write against (docs/plugins.md). It is stable; deeper imports are private.
 
-Control nodes and decorators, devices and signals join here.
+Devices and signals join here.
 """
 
 from __future__ import annotations
@@ -36,8 +36,20 @@ from executive.isc import Categorical, Channel, Comparison, Concern, Gaussian, H
 from executive.pool import Decision, Memory, Option, Policy, Situation, Strategy
 from executive.run.fault import Cue, Fault, FaultSpec
 from executive.run.instrument import Context, Instrument, InstrumentSpec, Judgement, Records, TreeParts
+from executive.tree.abilities import Abilities
+from executive.tree.groot import Attribute, Groot, Variant
 from executive.tree.nodes.action import ActionLeaf
-from executive.tree.nodes.base import FromTree, In, InOut, Leaf, Out
+from executive.tree.nodes.base import (
+    Children,
+    ControlNode,
+    FromTree,
+    In,
+    InOut,
+    Item,
+    Leaf,
+    NodeContext,
+    Out,
+)
 
 if TYPE_CHECKING:
     from executive.testing import Bench as Bench
@@ -65,8 +77,10 @@ __all__ = [
     "SEGMENT",
     "SPEED",
     "TEXT",
+    "Abilities",
     "Action",
     "ActionLeaf",
+    "Attribute",
     "Backend",
     "BackendRequest",
     "BackendSpec",
@@ -74,10 +88,12 @@ __all__ = [
     "Breach",
     "Categorical",
     "Channel",
+    "Children",
     "Comparison",
     "Concern",
     "ConfigError",
     "Context",
+    "ControlNode",
     "Cue",
     "Decision",
     "DeviceSpec",
@@ -88,11 +104,13 @@ __all__ = [
     "FileKind",
     "FromTree",
     "Gaussian",
+    "Groot",
     "Hypothesis",
     "In",
     "InOut",
     "Instrument",
     "InstrumentSpec",
+    "Item",
     "Judgement",
     "Kind",
     "Leaf",
@@ -101,6 +119,7 @@ __all__ = [
     "LongarmError",
     "Measured",
     "Memory",
+    "NodeContext",
     "Option",
     "Out",
     "Outcome",
@@ -118,6 +137,7 @@ __all__ = [
     "Strategy",
     "TreeParts",
     "ValueType",
+    "Variant",
     "Verb",
     "check_backend",
     "check_channel",
