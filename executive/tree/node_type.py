@@ -12,6 +12,7 @@ from executive.tree.nodes.leaf import Leaf
 from executive.tree.ports import PortSpec
 from executive.tree.store import Constant
 
+TREE_SYMBOL, CONDITION_SYMBOL = "⌂", "◇"
 NodeClass = type[Leaf] | type[ControlNode]
 
 
@@ -43,7 +44,9 @@ class NodeType:
     def symbol(self) -> str:
         """What stands before a node of this type in drawings."""
         declared = self.leaf or self.control
-        return declared.symbol if declared else "⌂"
+        if declared is None:
+            return TREE_SYMBOL
+        return declared.symbol or (CONDITION_SYMBOL if self.condition else "")
 
     @property
     def needs(self) -> tuple[str, ...]:

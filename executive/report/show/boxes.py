@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from executive.tree.node_type import TREE_SYMBOL
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 
 MAX_LINE, MAX_GUARD = 44, 72
@@ -59,7 +60,7 @@ def boxes(
 ) -> Box:
     """The boxes of a tree. `strategies` are what a `recover` may choose; `outcomes` gives a word per path."""
     maker = _Maker(strategies or {}, outcomes or {})
-    root = Box(tree.name, tree.name, "⌂", "tree", _doc_lines(tree.doc), frame=tree.name)
+    root = Box(tree.name, tree.name, TREE_SYMBOL, "tree", _doc_lines(tree.doc), frame=tree.name)
     root.outcome = maker.outcomes.get(tree.name)
     root.children = [maker.box(*root_of(tree.name, tree), tree)]
     return root
