@@ -36,7 +36,7 @@ from executive.isc import Categorical, Channel, Comparison, Concern, Gaussian, H
 from executive.pool import Decision, Memory, Option, Policy, Situation, Strategy
 from executive.run.fault import Cue, Fault, FaultSpec
 from executive.run.instrument import Context, Instrument, InstrumentSpec, Judgement, Records, TreeParts
-from executive.tree.abilities import Abilities
+from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities
 from executive.tree.groot import Attribute, Groot, Variant
 from executive.tree.nodes.action import ActionLeaf
 from executive.tree.nodes.base import (
@@ -65,6 +65,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ANGLE",
     "DURATION",
+    "FAILS",
     "FLAG",
     "FORCE",
     "INTEGER",
@@ -74,8 +75,10 @@ __all__ = [
     "POSE",
     "QUALITY",
     "ROUTE",
+    "RUNS",
     "SEGMENT",
     "SPEED",
+    "SUCCEEDS",
     "TEXT",
     "Abilities",
     "Action",

@@ -22,10 +22,7 @@ from proving.mutation.operators import OPERATORS, Scene
 from proving.mutation.sites import sites
 
 MAJORITY = '''
-from executive.core.values import TEXT
-from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, any_of, only, where
-from executive.tree.groot import Attribute, Groot
-from executive.tree.nodes.base import ControlNode, In
+from longarm import FAILS, SUCCEEDS, TEXT, Attribute, ControlNode, Groot, In
 from py_trees.common import Status
 from py_trees.composites import Composite
 
@@ -43,9 +40,8 @@ class Majority(ControlNode):
         return Votes(context.name, children, self.tie)
 
     def abilities(self, inside):
-        able = any_of(inside)
-        tied = len(inside) % 2 == 0 and {SUCCEEDS, FAILS} <= able
-        return able | where(tied and self.tie == "success", SUCCEEDS)
+        able = frozenset().union(*inside)
+        return able | {self.tie} if {SUCCEEDS, FAILS} <= able else able
 
 
 class Votes(Composite):
