@@ -1,6 +1,6 @@
 """What authors of plug-ins write against (docs/plugins.md). It is stable; deeper imports are private.
 
-Control nodes and decorators, devices and signals join here.
+Devices and signals join here.
 """
 
 from __future__ import annotations
@@ -47,8 +47,20 @@ from executive.isc import Categorical, Channel, Comparison, Concern, Gaussian, H
 from executive.pool import Decision, Memory, Option, Policy, Situation, Strategy
 from executive.run.fault import Cue, Fault, FaultSpec
 from executive.run.instrument import Context, Instrument, InstrumentSpec, Judgement, Records, TreeParts
+from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities
+from executive.tree.groot import Attribute, Groot, Variant
 from executive.tree.nodes.action import ActionLeaf
-from executive.tree.nodes.base import FromTree, In, InOut, Leaf, Out
+from executive.tree.nodes.base import (
+    Children,
+    ControlNode,
+    FromTree,
+    In,
+    InOut,
+    Item,
+    Leaf,
+    NodeContext,
+    Out,
+)
 
 if TYPE_CHECKING:
     from executive.testing import Bench as Bench
@@ -64,6 +76,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ANGLE",
     "DURATION",
+    "FAILS",
     "FLAG",
     "FORCE",
     "INTEGER",
@@ -73,11 +86,15 @@ __all__ = [
     "POSE",
     "QUALITY",
     "ROUTE",
+    "RUNS",
     "SEGMENT",
     "SPEED",
+    "SUCCEEDS",
     "TEXT",
+    "Abilities",
     "Action",
     "ActionLeaf",
+    "Attribute",
     "Backend",
     "BackendRequest",
     "BackendSpec",
@@ -86,10 +103,12 @@ __all__ = [
     "CameraView",
     "Categorical",
     "Channel",
+    "Children",
     "Comparison",
     "Concern",
     "ConfigError",
     "Context",
+    "ControlNode",
     "Cue",
     "Decision",
     "DeviceSpec",
@@ -100,11 +119,13 @@ __all__ = [
     "FileKind",
     "FromTree",
     "Gaussian",
+    "Groot",
     "Hypothesis",
     "In",
     "InOut",
     "Instrument",
     "InstrumentSpec",
+    "Item",
     "Judgement",
     "Kind",
     "Leaf",
@@ -116,6 +137,7 @@ __all__ = [
     "LongarmError",
     "Measured",
     "Memory",
+    "NodeContext",
     "Option",
     "Out",
     "Outcome",
@@ -134,6 +156,7 @@ __all__ = [
     "Strategy",
     "TreeParts",
     "ValueType",
+    "Variant",
     "Verb",
     "check_backend",
     "check_channel",

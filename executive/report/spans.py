@@ -7,10 +7,7 @@ from typing import NamedTuple
 
 from executive.record.events import NodeChange
 from executive.report.gather import Run
-from executive.tree.addresses import CONTROL
-
-_SILENT = CONTROL - {"for_each"}
-"""Steps of a path that tell nothing; what is done for each of several tells itself from what is done once."""
+from executive.tree.catalogue import control_types
 
 
 class Span(NamedTuple):
@@ -89,5 +86,7 @@ def short_names(paths: list[str]) -> dict[str, str]:
 
 
 def _telling(parts: list[str]) -> list[str]:
-    kept = [part for part in parts[:-1] if part.split("#")[0] not in _SILENT]
+    """The steps that tell something: what is done for each of several tells itself from what is done once."""
+    silent = {name for name, kind in control_types().items() if not kind.names_an_item}
+    kept = [part for part in parts[:-1] if part.split("#")[0] not in silent]
     return [*kept, parts[-1]]

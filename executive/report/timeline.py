@@ -12,13 +12,13 @@ from executive.report.figure import Figure, duration
 from executive.report.gather import Run
 from executive.report.spans import Span, fault_spans, leaf_spans, short_names, strategy_spans
 
-_WIDTH, _LEFT, _ROW, _MOST_LEAVES = 1100.0, 200.0, 20.0, 24
+_WIDTH, _LEFT, _ROW, _MOST_ROWS = 1100.0, 200.0, 20.0, 24
 _COLOURS = {**palette.STATUS, "strategy": palette.STRATEGY, "fault": palette.FAULT}
 
 
 def timeline(run: Run) -> Figure | None:
     """Swimlanes of leaves, strategies and faults; None where nothing was recorded."""
-    leaves = dict(list(leaf_spans(run).items())[:_MOST_LEAVES])
+    leaves = dict(list(leaf_spans(run).items())[:_MOST_ROWS])
     names = short_names(list(leaves))
     groups = [
         ("leaves", {names[path]: (path, spans) for path, spans in leaves.items()}),

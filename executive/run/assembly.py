@@ -129,7 +129,7 @@ def _prepare(
         sensed = services.classification.tracker.sensed
         problem = belts.astray(sensed.tracks) if sensed else None
         if problem is not None:
-            built.trace.alarm = Outcome(Reason.DEVICE, problem)
+            built.trace.raise_alarm(Outcome(Reason.DEVICE, problem))
 
     return Run(
         root=built.root,

@@ -11,9 +11,9 @@ from pydantic import BaseModel
 from executive.config.describe import Parameter, properties
 from executive.core import registry
 from executive.core.registry import Broken, Kind
-from executive.tree.catalogue import NodeType, node_types
-from executive.tree.nodes.base import REQUIRED, FromTree, PortSpec
-from executive.tree.nodes.kind import LEAF_KIND
+from executive.tree.catalogue import broken_nodes, node_types
+from executive.tree.node_type import NodeType
+from executive.tree.ports import REQUIRED, FromTree, PortSpec
 
 ANYWHERE = ("tiers", "backends")  # where nothing is said, all of them
 Page = dict[str, Any]
@@ -34,7 +34,7 @@ def broken(listing: str) -> tuple[Broken, ...]:
     if listing == "plugins":
         kinds = [registry.broken(kind) for kind in registry.kinds()]
         return tuple(dict.fromkeys((*registry.broken_kinds(), *(b for of_kind in kinds for b in of_kind))))
-    return registry.broken(LEAF_KIND if listing == "nodes" else _kind(listing))
+    return broken_nodes() if listing == "nodes" else registry.broken(_kind(listing))
 
 
 def _kind(listing: str) -> Kind[Any]:
@@ -68,7 +68,9 @@ def _node(node: NodeType) -> Page:
     return {
         "category": node.category,
         "doc": node.doc,
-        "children": node.children,
+        "children": node.children.value,
+        "condition": node.condition,
+        "needs": list(node.needs),
         "ports": [_port(port) for port in node.ports],
     }
 
@@ -81,6 +83,8 @@ def _port(port: PortSpec) -> Page:
         "help": port.help,
         "required": port.default is REQUIRED,
     }
+    if port.choices:
+        told["choices"] = list(port.choices)
     if isinstance(port.default, FromTree):
         told["default"] = f"{{{port.default.name}}}"
     elif port.default is not REQUIRED:
@@ -115,10 +119,19 @@ def _plain(value: Any) -> Any:
 
 def as_text(name: str, entry: Page) -> str:
     """One entry for people: its doc, then a line per port, parameter or field."""
-    lines = [name + (f"  ({entry['category']})" if "category" in entry else ""), f"  {entry.get('doc', '')}"]
+    category = "condition" if entry.get("condition") else entry.get("category")
+    lines = [name + (f"  ({category})" if category else ""), f"  {entry.get('doc', '')}"]
     lines += [_port_line(port) for port in entry.get("ports", ())]
     lines += [_parameter_line(Parameter(**given)) for given in entry.get("parameters", ())]
-    told = ("doc", "category", "ports", "children", "parameters", *(("model",) * ("parameters" in entry)))
+    told = (
+        "doc",
+        "category",
+        "condition",
+        "ports",
+        "children",
+        "parameters",
+        *(("model",) * ("parameters" in entry)),
+    )
     for key, value in entry.items():
         if key in ANYWHERE and not value:
             lines.append(f"  {key}: any")
@@ -137,7 +150,8 @@ def _words(value: Any) -> str:
 
 def _port_line(port: Page) -> str:
     default = "" if port["required"] else f", default {port.get('default')}"
-    return f"  {port['direction']:5} {port['name']}: {port['type']}{default}   {port['help']}"
+    kind = " | ".join(port.get("choices", ())) or port["type"]
+    return f"  {port['direction']:5} {port['name']}: {kind}{default}   {port['help']}"
 
 
 def _parameter_line(parameter: Parameter) -> str:

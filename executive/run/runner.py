@@ -17,7 +17,7 @@ from executive.record import events
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.tree.nodes.base import Leaf, Trace
-from executive.tree.nodes.decorators import Guarded
+from executive.tree.nodes.guarded import Guarded
 from executive.tree.nodes.services import Services
 
 TELEMETRY_PERIOD_S = 10.0
@@ -167,15 +167,12 @@ class _Changes:
         self._run = run
         self._last: dict[str, Status] = dict.fromkeys(run.paths, Status.INVALID)
         self._outcomes: dict[str, Outcome[object]] = {}
-        run.trace.note = self._note
 
     def write(self) -> None:
+        self._outcomes.update(self._run.trace.take_ended())
         for path, status in self._changed():
             self._run.journal.write(self._event(path, status))
         self._outcomes.clear()
-
-    def _note(self, path: str, outcome: Outcome[object]) -> None:
-        self._outcomes[path] = outcome
 
     def _changed(self) -> Iterator[tuple[str, Status]]:
         last, ended_again = self._last, self._outcomes

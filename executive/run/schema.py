@@ -13,9 +13,11 @@ from executive.config.project import ProjectFile
 from executive.core import registry
 from executive.core.values import VALUE_TYPE_KIND
 from executive.run.instruments import instruments_there_are
-from executive.tree.catalogue import NodeType, node_types
+from executive.tree.catalogue import node_types
 from executive.tree.file import TreeFile
-from executive.tree.nodes.base import REQUIRED, Direction, PortSpec
+from executive.tree.node_type import NodeType
+from executive.tree.nodes.control import Children
+from executive.tree.ports import REQUIRED, Direction, PortSpec
 from executive.tree.spec import GUARDS
 
 _OWN = ("tree", "mission", "scenario", "project")
@@ -89,18 +91,26 @@ def _node() -> dict[str, Any]:
 def _parameters(kind: NodeType) -> dict[str, Any]:
     node: dict[str, Any] = {"$ref": "#/$defs/node"}
     properties = {port.name: _port(port) for port in kind.ports}
-    if kind.children == "one":
+    if kind.children is Children.ONE:
         properties["child"] = node
-    if kind.children == "many":
-        properties["children"] = {"type": "array", "items": node, "minItems": 1}
+    listing = _listing(kind, node)
+    if listing is not None:
+        properties["children"] = listing
     required = [port.name for port in kind.ports if port.default is REQUIRED]
     mapping: dict[str, Any] = {"type": ["object", "null"], "properties": properties, "description": kind.doc}
-    if kind.children == "one" and not kind.ports:
+    if kind.bare_child:
         return {"anyOf": [mapping, node], "description": kind.doc}
     mapping |= {"required": required, "additionalProperties": False}
-    if kind.children == "many":
-        return {"anyOf": [mapping, {"type": "array", "items": node, "minItems": 1}], "description": kind.doc}
-    return mapping
+    return mapping if listing is None else {"anyOf": [mapping, listing], "description": kind.doc}
+
+
+def _listing(kind: NodeType, node: dict[str, Any]) -> dict[str, Any] | None:
+    """The list of children, for a node that has one."""
+    if kind.children is Children.MANY:
+        return {"type": "array", "items": node, "minItems": 1}
+    if kind.children is Children.TWO:
+        return {"type": "array", "items": node, "minItems": 2, "maxItems": 2}
+    return None
 
 
 def _port(port: PortSpec) -> dict[str, Any]:
@@ -109,9 +119,19 @@ def _port(port: PortSpec) -> dict[str, Any]:
     told = {"description": f"{port.help} ({port.type.name}, {port.direction.value})"}
     if port.direction is not Direction.IN or not port.type.literal:
         return reference | told
+    literal = _literal(port)
+    if port.fixed or literal == {"type": "string"}:
+        return literal | told
+    return {"anyOf": [literal, reference]} | told
+
+
+def _literal(port: PortSpec) -> dict[str, Any]:
+    """A literal of the port's type, of its choices where it has some."""
+    if port.choices:
+        return {"enum": list(port.choices)}
     if port.type.unit is not None or port.type.python is str:
-        return {"type": "string"} | told
+        return {"type": "string"}
     if issubclass(port.type.python, Enum):
-        return {"anyOf": [{"enum": [member.value for member in port.type.python]}, reference]} | told
-    plain = {float: "number", int: "integer", bool: "boolean"}[port.type.python]
-    return {"anyOf": [{"type": plain}, reference]} | told
+        return {"enum": [member.value for member in port.type.python]}
+    plain: dict[str, Any] = {"type": {float: "number", int: "integer", bool: "boolean"}[port.type.python]}
+    return plain if port.least is None else plain | {"minimum": port.least}

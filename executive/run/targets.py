@@ -9,7 +9,7 @@ from executive.config.validate import guess
 from executive.core import registry
 from executive.core.errors import Problem
 from executive.pool.kind import STRATEGY_KIND
-from executive.tree.addresses import means
+from executive.tree.addresses import matches
 from executive.tree.spec import TreeSpec, walk
 from executive.tree.strategies import load_strategies, strategy_trees
 
@@ -23,7 +23,7 @@ def strange_nodes(source: Source, named: Iterable[Named], tree: TreeSpec) -> Ite
     paths = tuple(_node_paths(tree)) if named else ()
     names = sorted({path.rsplit("/", 1)[-1] for path in paths})
     for place, address in named:
-        if not any(means(address, path) for path in paths):
+        if not any(matches(address, path) for path in paths):
             last = address.rsplit("/", 1)[-1]
             text = f'got the node "{address}", which the tree {tree.name} does not have'
             yield source.at(place).problem(text + ("" if last in names else guess(last, names)))
@@ -46,7 +46,7 @@ def _node_paths(tree: TreeSpec) -> Iterator[str]:
     inside = [f"{n}/{p.partition('/')[2]}" for n, each in strategies.items() for p, _ in walk(each)]
     for path, node in walk(tree):
         yield path
-        if node.type == "recover":
+        if node.kind.recovers:
             yield from (f"{path}/{each}" for each in inside)
 
 

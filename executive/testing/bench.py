@@ -25,9 +25,10 @@ from executive.record.journal import RunJournal
 from executive.run.assembly import TICK_S, prior_pose
 from executive.testing.fake import FakeBackend, FakeWorld, OverheadLocalizer
 from executive.tree.build import BuiltTree, build
+from executive.tree.catalogue import node_types
 from executive.tree.load import load_tree, load_tree_text
+from executive.tree.node_type import NodeClass, NodeType
 from executive.tree.nodes.base import REQUIRED, FromTree, Leaf, Store, Trace
-from executive.tree.nodes.kind import leaf_name, leaves
 from executive.tree.nodes.services import Services
 from executive.tree.spec import TreeSpec
 from executive.tree.strategies import strategy_trees
@@ -50,14 +51,14 @@ class Bench:
     """The fake robot at the start of a short route, and what leaves are given to work with.
 
     `services`, `backend` and `robot` may be looked at and altered between runs; `events` is the record.
-    `own` leaves are known to trees beside those registered; the pool has `strategies`.
+    `own` node types are known to trees beside those registered; the pool has `strategies`.
     """
 
     def __init__(
         self,
         world: FakeWorld | None = None,
         route: tuple[Segment, ...] = ROUTE,
-        own: Iterable[type[Leaf]] = (),
+        own: Iterable[NodeClass] = (),
         strategies: tuple[Strategy, ...] = (),
         seed: int = 0,
     ) -> None:
@@ -91,7 +92,7 @@ class Bench:
 
         TypeError for a port that it lacks or misses.
         """
-        name, store, trace = leaf_name(leaf), Store(), Trace()
+        name, store, trace = leaf.name, Store(), Trace()
         ports = {port.name: port for port in leaf.ports()}
         strange = [name for name in values if name not in ports]
         if strange:
@@ -107,9 +108,8 @@ class Bench:
 
     def run_tree(self, tree: str | Path, **inputs: object) -> Ended:
         """Tick a tree to its end: a file, the text of one, or the text of a root node."""
-        known = leaves() | {leaf_name(leaf): leaf for leaf in self.own}
-        spec = _spec(tree, known)
-        return self._ticked(build(spec, self.services, inputs, strategy_trees(self.strategies), known))
+        spec = _spec(tree, node_types(self.own))
+        return self._ticked(build(spec, self.services, inputs, strategy_trees(self.strategies)))
 
     def _ticked(self, tree: BuiltTree, at_most: int = PATIENCE_TICKS) -> Ended:
         """Tick to the end; whatever happens, what was begun is halted and the robot rests."""
@@ -127,7 +127,7 @@ class Bench:
         return Ended(_outcome(tree), ticks, _values(tree.store))
 
 
-def _spec(tree: str | Path, known: Mapping[str, type[Leaf]]) -> TreeSpec:
+def _spec(tree: str | Path, known: Mapping[str, NodeType]) -> TreeSpec:
     if isinstance(tree, Path):
         return load_tree(tree, known)
     text = tree if tree.lstrip().startswith("tree:") else f"tree: bench\nroot:\n{indent(tree, '  ')}\n"

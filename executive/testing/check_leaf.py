@@ -10,7 +10,7 @@ from executive.core.errors import Breach
 from executive.core.types import Outcome, Reason
 from executive.testing.bench import PATIENCE_TICKS, UNDER_WAY, Bench, Ended
 from executive.tree.nodes.base import Leaf
-from executive.tree.nodes.kind import broken_promises, leaf_name
+from executive.tree.nodes.kind import broken_promises
 
 
 class LeafBreach(Breach):
@@ -26,7 +26,7 @@ def check_leaf(leaf: type[Leaf], **values: Any) -> None:
     if not broken:
         broken += _in_use(leaf, values)
     if broken:
-        raise LeafBreach(f"leaf {leaf_name(leaf)}", broken)
+        raise LeafBreach(f"leaf {leaf.name}", broken)
 
 
 def _in_use(leaf: type[Leaf], values: dict[str, Any]) -> Iterator[str]:

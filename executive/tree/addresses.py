@@ -9,24 +9,18 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-CONTROL = frozenset(
-    {
-        *("sequence", "selector", "parallel", "loop", "recover", "for_each", "repeat", "retry", "timeout"),
-        *("inverter", "force_success", "force_failure"),
-    }
-)
-"""What nodes of control flow are called where a tree does not name them."""
+from executive.tree.catalogue import control_types
 
 
 @lru_cache(maxsize=1 << 16)  # asked every tick, of the same few
-def means(address: str, path: str) -> bool:
-    """Whether the node at `path` is one that `address` speaks of."""
+def matches(address: str, path: str) -> bool:
+    """Whether an address means the node at `path`."""
     *around, name = address.split("/")
     *outer, last = path.split("/")
     if not _is(name, last):
         return False
     while around:
-        while outer and not _is(around[-1], outer[-1]) and outer[-1].split("#")[0] in CONTROL:
+        while outer and not _is(around[-1], outer[-1]) and outer[-1].split("#")[0] in control_types():
             outer.pop()
         if not outer or not _is(around.pop(), outer.pop()):
             return False

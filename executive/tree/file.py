@@ -11,7 +11,7 @@ from executive.config.source import Source
 from executive.config.validate import Problems, Strict
 from executive.core.values import VALUE_TYPE_KIND
 from executive.tree.literals import literal
-from executive.tree.nodes.base import (
+from executive.tree.ports import (
     REQUIRED,
     Direction,
     FromTree,

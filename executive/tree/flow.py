@@ -13,7 +13,7 @@ from executive.core.errors import Problem
 from executive.core.values import NUMBER, ValueType
 from executive.tree.expressions.guards import Guard
 from executive.tree.expressions.typed import GuardError
-from executive.tree.nodes.base import Direction, PortSpec
+from executive.tree.ports import Direction, PortSpec
 from executive.tree.spec import Reference
 
 

@@ -12,19 +12,19 @@ from executive.core import units
 from executive.core.errors import ConfigError
 from executive.core.units import UnitError
 from executive.core.values import ValueType
-from executive.tree.nodes.base import Direction, PortSpec
+from executive.tree.ports import Direction, PortSpec
 from executive.tree.spec import Literal, PortValue, Reference
 
 _REFERENCE = re.compile(r"\{\s*([A-Za-z_]\w*)((?:\.[A-Za-z_]\w*)*)\s*\}")
 _KINDS = {kind.name: kind for kind in units.KINDS}
 
 
-def port_value(source: Source, place: Place, port: PortSpec, fixed: bool = False) -> PortValue:
-    """The value at `place` for `port`; ConfigError when it is none. A `fixed` port takes no reference."""
+def port_value(source: Source, place: Place, port: PortSpec) -> PortValue:
+    """The value at `place` for `port`; ConfigError when it is none."""
     data, mark = source.get(place), source.at(place)
     reference = _reference(data)
     if reference is not None:
-        if fixed:
+        if port.fixed:
             raise ConfigError([mark.problem(f'got "{data}", expected a literal {port.type.name}')])
         if reference.attributes and port.direction is not Direction.IN:
             message = f'got "{data}" for a port that is written, expected a name without attributes'
@@ -37,7 +37,13 @@ def port_value(source: Source, place: Place, port: PortSpec, fixed: bool = False
             f"got {shown(data)} for a port that is written, expected a reference such as {{{port.name}}}"
         )
         raise ConfigError([mark.problem(message)])
-    return Literal(literal(source, place, port.type), str(data))
+    value = literal(source, place, port.type)
+    if port.choices and value not in port.choices:
+        message = f"got {shown(value)}, expected {listed(port.choices)}{guess(value, port.choices)}"
+        raise ConfigError([mark.problem(message)])
+    if port.least is not None and isinstance(value, int) and value < port.least:
+        raise ConfigError([mark.problem(f"got {value}, expected {port.least} or more")])
+    return Literal(value, str(data))
 
 
 def literal(source: Source, place: Place, kind: ValueType[Any]) -> object:

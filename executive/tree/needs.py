@@ -8,7 +8,6 @@ from executive.config.backends import BackendSpec
 from executive.core import registry
 from executive.core.device_spec import DEVICE_KIND
 from executive.core.errors import PluginError, Problem
-from executive.tree.nodes.kind import leaves
 from executive.tree.spec import NodeSpec, TreeSpec, walk
 
 
@@ -47,7 +46,5 @@ def unfit(strategies: Mapping[str, TreeSpec], backend: BackendSpec) -> dict[str,
 
 
 def _lacking(tree: TreeSpec, there: Collection[str]) -> Iterator[tuple[NodeSpec, str]]:
-    known = leaves()
     for _, node in walk(tree):
-        leaf = known.get(node.type)
-        yield from ((node, device) for device in (leaf.needs if leaf else ()) if device not in there)
+        yield from ((node, device) for device in node.kind.needs if device not in there)

@@ -9,7 +9,9 @@ from typing import Any
 from executive.config.source import Mark
 from executive.core.values import ValueType
 from executive.tree.expressions.guards import Guard
-from executive.tree.nodes.base import REQUIRED, PortSpec
+from executive.tree.node_type import NodeType
+from executive.tree.nodes.control import ControlNode
+from executive.tree.ports import REQUIRED, PortSpec
 
 
 @dataclass(frozen=True)
@@ -37,28 +39,36 @@ class Literal:
 PortValue = Reference | Literal
 
 GUARDS = ("skip_if", "while", "success_if", "failure_if")
+BESIDE = ("name", *GUARDS)
+"""What may stand beside a node's type."""
 
 
 @dataclass(frozen=True)
 class NodeSpec:
-    """One node of a tree file. `tree` is set where it is another tree, `item` where it is a for_each."""
+    """One node of a tree file. `tree` is set where it is another tree."""
 
-    type: str
-    category: str
+    kind: NodeType
     name: str
     mark: Mark
     ports: Mapping[str, PortValue] = field(default_factory=dict)
     guards: Mapping[str, Guard] = field(default_factory=dict)
     children: tuple[NodeSpec, ...] = ()
     tree: TreeSpec | None = None
-    item: str | None = None
 
-    def literal(self, port: str) -> Any:
-        """The value of a port that only takes literals."""
-        value = self.ports[port]
-        if not isinstance(value, Literal):
-            raise TypeError(f"{self.type}.{port} is not a literal")
-        return value.value
+    @property
+    def type(self) -> str:
+        """What the file calls its type."""
+        return self.kind.name
+
+    @property
+    def literals(self) -> dict[str, object]:
+        """The values of the ports that are given literals, in SI."""
+        return {name: value.value for name, value in self.ports.items() if isinstance(value, Literal)}
+
+    @property
+    def control(self) -> ControlNode | None:
+        """The control node with its literals, to be asked what it can do; None for leaves and trees."""
+        return self.kind.with_literals(self.literals)
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ class Excuse(Strict):
     def kind(self) -> str:
         return next(kind for kind in KINDS if getattr(self, kind) is not None)
 
-    def means(self, item: Item) -> bool:
+    def matches(self, item: Item) -> bool:
         pattern = str(getattr(self, self.kind))
         if item.kind != self.kind or not fnmatchcase(item.name, pattern):
             return False
@@ -87,7 +87,7 @@ class Excuses:
 
     def of(self, items: Iterable[Item]) -> dict[Item, str]:
         """The items that are excused, with the reason."""
-        return {item: excuse.because for item in items for excuse, _ in self.entries if excuse.means(item)}
+        return {item: excuse.because for item in items for excuse, _ in self.entries if excuse.matches(item)}
 
     def problems(self, items: Iterable[Item], seen: Seen) -> list[Problem]:
         """Excuses that are about nothing (any more), and excuses for what did happen."""
@@ -109,7 +109,7 @@ def excuses_in(source: Source) -> Excuses:
 
 
 def _problems(excuse: Excuse, mark: Mark, items: tuple[Item, ...], seen: Seen) -> Iterable[Problem]:
-    meant = [item for item in items if excuse.means(item)]
+    meant = [item for item in items if excuse.matches(item)]
     for word in excuse.outcomes or (None,):
         if not any(word in (None, item.word) for item in meant):
             yield mark.problem(_about_nothing(excuse, word, items))

@@ -14,9 +14,9 @@ from executive.core import registry
 from executive.core.types import Reason
 from executive.isc import hypothesis_names
 from executive.run import FAULT_KIND
+from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 from proving.coverage import abilities
-from proving.coverage.abilities import Abilities
 from proving.coverage.items import Item
 from proving.inject.triggers import PHASES
 
@@ -61,14 +61,14 @@ class _Walk:
         """The nodes of a tree that stands at `path`."""
         self.universe.trees[tree.name] = tree
         run_path, node = root_of(path, tree)
-        return self.node(run_path, f"{tree.name}/{node.name}", node, tree, interrupted, abilities.S)
+        return self.node(run_path, f"{tree.name}/{node.name}", node, tree, interrupted, SUCCEEDS)
 
     def node(
         self, path: str, name: str, node: NodeSpec, around: TreeSpec, interrupted: bool, skipped: str
     ) -> Abilities:
         self.universe.places[path] = name
         words = self.universe.words.setdefault(name, [])  # before its children's, as drawings have it
-        leaf = abilities.leaf_class(node)
+        leaf = node.kind.leaf
         if leaf is not None:
             able = abilities.of_leaf(leaf)
             self.universe.leaves.add(name)
@@ -83,16 +83,21 @@ class _Walk:
         self, path: str, name: str, node: NodeSpec, around: TreeSpec, interrupted: bool
     ) -> list[Abilities]:
         """The abilities of the children; a recover's strategies are walked, but do not end for its child."""
-        interrupted = interrupted or "while" in node.guards or node.type == "timeout"
+        interrupted = interrupted or "while" in node.guards
         if node.tree is not None:
             return [self.root(path, node.tree, interrupted)]
-        skipped = abilities.F if node.type == "selector" else abilities.S
+        control, count = node.control, len(node.children)
+        skipped = SUCCEEDS if control is None else control.skipped.value.lower()
+
+        def cut(index: int) -> bool:
+            return control is not None and control.interrupts(index, count)
+
         paths, names = under(path, node.children), under(name, node.children)
         able = [
-            self.node(run_path, own, child, around, interrupted or _cuts(node, index), skipped)
+            self.node(run_path, own, child, around, interrupted or cut(index), skipped)
             for index, ((run_path, child), (own, _)) in enumerate(zip(paths, names, strict=True))
         ]
-        if node.type == "recover":
+        if node.kind.recovers:
             self.recoveries(path, around, interrupted)
         return able
 
@@ -103,23 +108,16 @@ class _Walk:
                 self.root(f"{path}/{name}", tree, interrupted)
 
 
-def _cuts(node: NodeSpec, index: int) -> bool:
-    """Whether a sibling may end this child of a node while it is under way."""
-    if node.type == "parallel":
-        return len(node.children) > 1
-    return index > 0 and node.type in ("sequence", "selector") and not node.literal("memory")
-
-
 def _words(node: NodeSpec, able: Abilities, reasons: list[str], interrupted: bool) -> Iterable[str]:
     """How this node's outcomes are called: a leaf's failures by their reasons."""
     guards = [GUARD] if {"while", "failure_if"} & node.guards.keys() else []
-    ends = reasons if node.category == "leaf" else [abilities.F] if abilities.F in able else []
-    runs = abilities.R in able
+    ends = reasons if node.kind.leaf else [FAILS] if FAILS in able else []
+    runs = RUNS in able
     return (
-        *([abilities.S] if abilities.S in able else []),
+        *([SUCCEEDS] if SUCCEEDS in able else []),
         *ends,
         *guards,
-        *([abilities.R] if runs else []),
+        *([RUNS] if runs else []),
         *([HALTED] if runs and interrupted else []),
     )
 

@@ -8,7 +8,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from executive.run import Cue, TreeParts
-from executive.tree.addresses import means
+from executive.tree.addresses import matches
 from proving.faults.altered import Counted
 
 
@@ -57,7 +57,7 @@ class NodeFault(Counted):
 
     def wrap_tree(self, tree: TreeParts, cue: Cue) -> None:
         for path, node in tree.nodes.items():
-            if means(self._node, path):
+            if matches(self._node, path):
                 self.replace(Reticked(path, node), cue)
 
     def replace(self, node: Reticked, cue: Cue) -> None:

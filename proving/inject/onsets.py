@@ -6,7 +6,7 @@ from collections import Counter
 
 from executive.core.types import Call
 from executive.record import events, listener, live_types
-from executive.tree.addresses import means
+from executive.tree.addresses import matches
 from executive.tree.expressions.guards import parse_guard
 from proving.inject.triggers import Trigger
 
@@ -78,7 +78,7 @@ class Onset:
         t = self._trigger
         if t.node is not None:
             return sum(
-                n for (kind, path), n in seen.entered.items() if kind == "node" and means(t.node, path)
+                n for (kind, path), n in seen.entered.items() if kind == "node" and matches(t.node, path)
             )
         kind = "strategy" if t.strategy is not None else "phase"
         return seen.entered[kind, str(getattr(t, kind))]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from executive.record import History, JudgedRow, row
 from executive.record.events import NodeChange
-from executive.tree.addresses import means
+from executive.tree.addresses import matches
 from proving.judge.expect import Times
 
 FAILURE, HALTED = "failure", "halted"
@@ -28,7 +28,7 @@ class End:
     def is_of(self, step: Mapping[str, str]) -> bool:
         """Whether this is what a step of a scenario speaks of."""
         (address, word), *_ = step.items()
-        return word in self.words and means(address, self.path)
+        return word in self.words and matches(address, self.path)
 
 
 def ends(history: History) -> list[End]:

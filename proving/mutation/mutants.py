@@ -16,9 +16,10 @@ from executive.config.source import Mark, Source, read
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
 from executive.pool import Strategy
-from executive.tree.catalogue import NodeType, node_types
+from executive.tree.catalogue import node_types
 from executive.tree.load import load_tree
-from executive.tree.nodes.base import PortSpec
+from executive.tree.node_type import NodeType
+from executive.tree.ports import PortSpec
 from executive.tree.spec import NodeSpec, TreeSpec, walk
 from executive.tree.strategies import strategy_trees
 from proving.coverage.universe import Universe

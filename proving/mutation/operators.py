@@ -12,9 +12,11 @@ from executive.config.source import Place, Source
 from executive.core import registry
 from executive.core.units import UnitError, split
 from executive.core.values import VALUE_TYPE_KIND
-from executive.tree.catalogue import NodeType
-from executive.tree.load import BESIDE
-from executive.tree.nodes.base import PortSpec
+from executive.tree.catalogue import inverter
+from executive.tree.node_type import NodeType
+from executive.tree.nodes.control import Children
+from executive.tree.ports import PortSpec
+from executive.tree.spec import BESIDE
 from proving.mutation.sites import Site
 
 ABSENT = object()
@@ -65,7 +67,8 @@ def swap_children(scene: Scene, site: Site) -> Iterator[Change]:
 def drop_child(scene: Scene, site: Site) -> Iterator[Change]:
     """A child is missing."""
     children = scene.source.get(site.listing) if site.listing else []
-    if site.listing and len(children) > 1 and site.word != "loop":
+    kind = scene.types.get(site.word)
+    if site.listing and len(children) > 1 and kind is not None and kind.children is Children.MANY:
         for i in range(len(children)):
             label = scene.label((*site.listing, i))
             yield Change(site.listing, children[:i] + children[i + 1 :], f"drop {label} ({i + 1})")
@@ -73,19 +76,20 @@ def drop_child(scene: Scene, site: Site) -> Iterator[Change]:
 
 def invert(scene: Scene, site: Site) -> Iterator[Change]:
     """Success for failure, or a sequence for a selector."""
-    other = {"sequence": "selector", "selector": "sequence"}.get(site.word)
+    kind = scene.types.get(site.word)
+    other = kind.control.counterpart if kind is not None and kind.control is not None else None
     if other is not None:
         renamed = {other if key == site.word else key: value for key, value in site.data.items()}
         yield Change(site.place, renamed, f"{other} for {site.word}")
     elif not site.children:
-        yield Change(site.place, {"inverter": {"child": site.data}}, f"invert {scene.label(site.place)}")
+        yield Change(site.place, {inverter().name: {"child": site.data}}, f"invert {scene.label(site.place)}")
 
 
 def unwrap(scene: Scene, site: Site) -> Iterator[Change]:
     """A decorator is missing; `recover` is the one that matters most."""
     kind = scene.types.get(site.word)
-    if kind is None or kind.children != "one" or site.word == "for_each":
-        return
+    if kind is None or kind.children is not Children.ONE or kind.names_an_item:
+        return  # what it is, or what its child speaks of, would be gone too
     child = scene.source.get(site.children[0])
     bare = {child: None} if isinstance(child, str) else child
     if not site.guards.keys() & bare.keys():
@@ -108,11 +112,9 @@ def change_literal(scene: Scene, site: Site) -> Iterator[Change]:
     given = scene.source.get(site.inside)
     if not isinstance(given, dict):
         return
-    kind = scene.types.get(site.word)
-    choices = (kind.choices or {}) if kind else {}
     for name, port in scene.ports(site.word).items():
         if name in given:
-            for value in _others(given[name], port, choices.get(name, ())):
+            for value in _others(given[name], port):
                 yield Change((*site.inside, name), value, f"{name} {value} for {given[name]}")
 
 
@@ -131,9 +133,10 @@ def defaults(source: Source) -> Iterator[Change]:
                 yield Change(("ports", name, "default"), value, f"{name} {value} for {port['default']}")
 
 
-def _others(given: Any, port: PortSpec, choices: tuple[str, ...]) -> Iterator[Any]:
+def _others(given: Any, port: PortSpec) -> Iterator[Any]:
     if isinstance(given, str) and given.startswith("{"):
         return
+    choices = port.choices
     if issubclass(port.type.python, Enum):
         choices = tuple(str(member.value) for member in port.type.python)
     if choices:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from executive.config.source import Mark, Place, Source
-from executive.tree.catalogue import NodeType
-from executive.tree.load import BESIDE
+from executive.tree.node_type import NodeType
+from executive.tree.nodes.control import Children
+from executive.tree.spec import BESIDE
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,9 @@ def _site(source: Source, place: Place, types: Mapping[str, NodeType]) -> Site:
 
 def _children(source: Source, inside: Place, kind: NodeType | None) -> tuple[tuple[Place, ...], Place | None]:
     given = source.get(inside)
-    if kind is None or kind.children == "none":
+    if kind is None or kind.children is Children.NONE:
         return (), None
-    if kind.children == "one":
+    if kind.children is Children.ONE:
         return ((*inside, "child") if isinstance(given, dict) and "child" in given else inside,), None
     listing = (*inside, "children") if isinstance(given, dict) else inside
     return tuple((*listing, index) for index in range(len(source.get(listing)))), listing

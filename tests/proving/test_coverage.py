@@ -10,9 +10,8 @@ from executive.cli import invoke
 from executive.core.errors import ConfigError, RecordError
 from executive.record import events
 from executive.record.history import At
+from executive.tree.catalogue import node_types
 from executive.tree.load import load_tree_text
-from executive.tree.nodes.kind import leaves
-from proving.coverage.abilities import takes_time
 from proving.coverage.command import coverage as command_line
 from proving.coverage.coverage import cover
 from proving.coverage.drawing import page
@@ -88,11 +87,14 @@ def test_what_a_node_can_end_as_follows_from_what_is_inside(outer, words):
     assert universe(outer)["/" + outer.split(":")[0]] == words
 
 
-def test_a_leaf_says_by_its_types_whether_it_takes_time():
-    assert {name for name in ("wait", "localise", "drive_leg") if takes_time(leaves()[name])} == {
-        *("wait", "localise", "drive_leg")
-    }
-    assert not any(takes_time(leaves()[name]) for name in ("facing", "arrived", "set_leg", "as_predicted"))
+@pytest.mark.parametrize("name", ["wait", "localise", "drive_leg"])
+def test_a_leaf_that_may_return_none_takes_time(name):
+    assert node_types()[name].leaf.takes_time()
+
+
+@pytest.mark.parametrize("name", ["facing", "arrived", "set_leg", "as_predicted"])
+def test_a_leaf_that_always_returns_an_outcome_takes_none(name):
+    assert not node_types()[name].leaf.takes_time()
 
 
 def test_halted_is_running_and_then_idle_not_done_and_then_idle():

@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 
 from executive.cli import invoke
-from executive.core import registry
 from executive.core.devices import DRIVE
 from executive.core.errors import NodeRaised
 from executive.pool import Pool
@@ -19,8 +18,8 @@ from executive.record import History, events
 from executive.record.reader import is_complete
 from executive.run.runner import Run
 from executive.testing import FakeBackend
+from executive.tree.catalogue import node_types
 from executive.tree.nodes.base import Leaf
-from executive.tree.nodes.kind import LEAF_KIND
 from tests.system.bench import SETTINGS, Broken, Ended, Sabotage, Setting, run
 
 TICKS = (1, 2, 10)
@@ -242,7 +241,7 @@ def test_a_leaf_that_raises_ends_the_command_with_3_and_a_traceback(
     def broken(self: Leaf) -> None:
         raise Broken("step is broken")
 
-    monkeypatch.setattr(registry.get(LEAF_KIND, leaf), "step", broken)
+    monkeypatch.setattr(node_types()[leaf].leaf, "step", broken)
     file = "blind.yaml" if leaf == "drive_blind" else "short.yaml"
     assert invoke(["run", file, "--out", "out", "--quiet"]) == 3
     told = capsys.readouterr()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from executive.cli.importing.markup import Tag
@@ -13,22 +14,18 @@ from executive.config.source import Mark, Place
 from executive.config.validate import guess
 from executive.core.errors import Problem
 from executive.core.values import FLAG, INTEGER, NUMBER
-from executive.report.show.groot import GUARDS, NAMES, REACTIVE
-from executive.tree.catalogue import NodeType
+from executive.report.show.groot import GUARDS
 from executive.tree.expressions.typed import GuardError
+from executive.tree.groot import Groot, Variant, as_given
+from executive.tree.node_type import NodeType
+from executive.tree.nodes.control import Children
+from executive.tree.nodes.timeout import seconds
 
-KINDS = {bt: ours for ours, bt in NAMES.items()}
 WORDS = {bt: ours for ours, bt in GUARDS.items()}
 _EXPLICIT = frozenset({"Action", "Condition", "Control", "Decorator"})
 _NOT_PORTS = frozenset({"ID", "name"})
 _SCRIPTS_AFTER = frozenset({"_onSuccess", "_onFailure", "_onHalted", "_post"})
-_LIKE = {"AsyncSequence": "sequence", "AsyncFallback": "selector"}
-_LEAVES = {"AlwaysSuccess": True, "AlwaysFailure": False}
 _NOTES = {
-    "ReactiveSequence": "a sequence without memory: it starts anew at every tick",
-    "ReactiveFallback": "a selector without memory: it starts anew at every tick",
-    "AsyncSequence": "a plain sequence: it does not wait for a tick between its children",
-    "AsyncFallback": "a plain selector: it does not wait for a tick between its children",
     "_while": "`while` fails its node when it no longer holds, where BehaviorTree.CPP skips it",
 }
 _NOT_OURS = {
@@ -71,8 +68,9 @@ class Translator:
     def node(self, tag: Tag, place: Place) -> dict[str, Any]:
         """The node as a mapping; what is wrong with it is noted in the draft."""
         self.draft.values[place] = tag.mark
-        if tag.name in _NOTES:
-            self.note(tag.mark, f"{tag.name} becomes {_NOTES[tag.name]}")
+        meant = self._meant.get(tag.name)
+        if meant is not None and meant[1].note:
+            self.note(tag.mark, f"{tag.name} becomes {meant[1].note}")
         made = self._made(tag, place)
         kind = next(iter(made))
         name = tag.attributes.get("name", kind)
@@ -90,8 +88,6 @@ class Translator:
     def _made(self, tag: Tag, place: Place) -> dict[str, Any]:
         if tag.name == "SubTree":
             return self._subtree(tag, place)
-        if tag.name in _LEAVES:
-            return {"always": {"success": _LEAVES[tag.name]}}
         if tag.name in ("Sleep", "Delay"):
             return self._waiting(tag, place)
         if tag.name == "ScriptCondition":
@@ -101,30 +97,33 @@ class Translator:
             words = f"got {tag.name}, {_NOT_OURS[tag.name]}; expected a node that our trees have"
             self.problem(tag.mark, words)
             return {"always": {}}
-        kind = tag.attributes.get("ID", tag.name) if tag.name in _EXPLICIT else self._kind(tag)
-        return {kind: self._content(tag, kind, (*place, kind))}
+        meant, variant = self._meant.get(tag.name, (tag.name, Variant()))
+        kind = tag.attributes.get("ID", tag.name) if tag.name in _EXPLICIT else meant
+        return {kind: self._content(tag, kind, variant, (*place, kind))}
 
-    def _kind(self, tag: Tag) -> str:
-        reactive = {bt: ours for ours, bt in REACTIVE.items()}
-        again = {"KeepRunningUntilFailure": "repeat"}
-        return ({**KINDS, **reactive, **_LIKE, **again}).get(tag.name, tag.name)
+    @cached_property
+    def _meant(self) -> Mapping[str, tuple[str, Variant]]:
+        """By tag of BehaviorTree.CPP, our type and what the tag says of its ports."""
+        variants = (
+            (name, *pair) for name, kind in self.types.items() for pair in kind.groot.variants.items()
+        )
+        own = {kind.groot.tag: (name, Variant()) for name, kind in self.types.items()}
+        return own | {tag: (name, variant) for name, tag, variant in variants}
 
-    def _content(self, tag: Tag, kind: str, place: Place) -> dict[str, Any]:
+    def _content(self, tag: Tag, kind: str, variant: Variant, place: Place) -> dict[str, Any]:
         self.draft.values[place] = tag.mark
-        content = self._ports(tag, kind, place)
-        if tag.name in REACTIVE.values():
-            content["memory"] = False
+        content = self._ports(tag, kind, place) | dict(variant.ports)
         known = self.types.get(kind)
         if known is None:
             self._unknown(tag, kind)
-        if known is not None and known.children == "one":
+        if known is not None and known.children is Children.ONE:
             if len(tag.children) > 1:
                 words = f"got {len(tag.children)} children of {tag.name}, expected exactly one"
                 self.problem(tag.mark, words)
             inner = [self.node(child, (*place, "child")) for child in tag.children]
             return content | ({"child": inner[0]} if inner else {})
         children = [self.node(child, (*place, "children", n)) for n, child in enumerate(tag.children)]
-        if known is not None and known.children == "none" and children:
+        if known is not None and known.children is Children.NONE and children:
             self.problem(tag.children[0].mark, f"got a child of the leaf {kind}, expected none")
         return content | ({"children": children} if children else {})
 
@@ -138,23 +137,32 @@ class Translator:
 
     def _ports(self, tag: Tag, kind: str, place: Place) -> dict[str, Any]:
         given = {k: v for k, v in tag.attributes.items() if k not in _NOT_PORTS and not k.startswith("_")}
-        renamed = {"retry": ("num_attempts", "attempts"), "repeat": ("num_cycles", "times")}
+        groot = self.types[kind].groot if kind in self.types else Groot(kind)
+        ours = {attribute.name: (port, attribute.read) for port, attribute in groot.attributes.items()}
         content: dict[str, Any] = {}
-        if kind == "parallel" and tag.name == "Parallel":
-            policy = self._policy(tag, given)
-            given, content = {}, {"policy": policy} if policy else {}
         for bt, text in given.items():
-            port = renamed[kind][1] if kind in renamed and bt == renamed[kind][0] else bt
-            if kind == "repeat" and port == "times" and text == "-1":
+            if bt in groot.constants:
+                self._constant(tag.at(bt), bt, text, *groot.constants[bt])
                 continue
-            if kind == "timeout" and bt == "msec":
-                port, text = "after", _seconds(text)
+            port, read = ours.get(bt, (bt, as_given))
             self.draft.values[(*place, port)] = tag.at(bt)
-            content[port] = self._value(tag.at(bt), kind, port, text)
+            try:
+                value = read(text, len(tag.children))
+            except ValueError as error:
+                self.problem(tag.at(bt), str(error))
+                continue
+            if value is not None:
+                content[port] = self._value(tag.at(bt), kind, port, value)
         return content
 
-    def _value(self, mark: Mark, kind: str, port: str, text: str) -> object:
+    def _constant(self, mark: Mark, bt: str, text: str, only: str, why: str) -> None:
+        if text != only:
+            self.problem(mark, f'got {bt} "{text}", expected {only}: {why}')
+
+    def _value(self, mark: Mark, kind: str, port: str, text: object) -> object:
         """What the attribute says, as YAML would have it for a port of that type."""
+        if not isinstance(text, str):
+            return text
         if text == "{=}":
             return f"{{{port}}}"
         if text.startswith("{@"):
@@ -162,17 +170,6 @@ class Translator:
         known = self.types.get(kind)
         declared = next((p for p in known.ports if p.name == port), None) if known else None
         return plain(text, declared.type.name) if declared else text
-
-    def _policy(self, tag: Tag, given: Mapping[str, str]) -> str | None:
-        wanted, allowed = given.get("success_count", "-1"), given.get("failure_count", "1")
-        if allowed != "1":
-            words = f'got failure_count "{allowed}", expected 1: ours fails as soon as one child does'
-            self.problem(tag.at("failure_count"), words)
-        if wanted in ("-1", str(len(tag.children))):
-            return None
-        if wanted != "1":
-            self.problem(tag.at("success_count"), f'got success_count "{wanted}", expected 1 or all children')
-        return "one"
 
     def _subtree(self, tag: Tag, place: Place) -> dict[str, Any]:
         if "ID" not in tag.attributes:
@@ -186,7 +183,7 @@ class Translator:
 
     def _waiting(self, tag: Tag, place: Place) -> dict[str, Any]:
         key = "msec" if tag.name == "Sleep" else "delay_msec"
-        wait = {"wait": {"duration": _seconds(tag.attributes.get(key, "missing"))}}
+        wait = {"wait": {"duration": seconds(tag.attributes.get(key, "missing"))}}
         if tag.name == "Sleep":
             self.draft.values[(*place, "wait", "duration")] = tag.at(key)
             return wait
@@ -225,8 +222,3 @@ def plain(text: str, kind: str) -> object:
     if kind == NUMBER.name and re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text):
         return float(text)
     return text
-
-
-def _seconds(text: str) -> str:
-    """Milliseconds as a duration; anything else stays as it is, for the check to complain of."""
-    return f"{int(text) / 1000:g} s" if text.isdecimal() else text

@@ -16,8 +16,8 @@ from executive.core.values import (
     TEXT,
     VALUE_TYPE_KIND,
 )
-from executive.tree.catalogue import ITEMS, NodeType
-from executive.tree.nodes.base import Direction, PortSpec
+from executive.tree.node_type import NodeType
+from executive.tree.ports import ITEMS, Direction, PortSpec
 from executive.tree.spec import GUARDS
 
 _NAME = re.compile(r"\{\s*([A-Za-z_]\w*)((?:\.\w+)*)\s*\}")
@@ -70,15 +70,24 @@ def uses(node: Any, types: Mapping[str, NodeType], trees: Mapping[str, Mapping[s
             for name, _ in _NAME.findall(str(beside.get(word, ""))):
                 found.add(name, None, Direction.IN)
                 found.of[name].guessed = found.of[name].guessed or _guessed(beside[word], name)
-        if kind == "for_each" and isinstance(content.get("as"), str):
-            found.items.add(content["as"])
-            found.of.setdefault(content["as"], Use()).type = next(iter(ITEMS.values())).name
+        for port, item_type in _items(types.get(kind)):
+            if isinstance(content.get(port), str):
+                found.items.add(content[port])
+                found.of.setdefault(content[port], Use()).type = item_type
         for port, value in content.items():
             match = _NAME.fullmatch(value) if isinstance(value, str) else None
             if match is not None:
                 type_, direction = _port(kind, port, types, trees)
                 found.add(match[1], None if match[2] else type_, direction)
     return found
+
+
+def _items(kind: NodeType | None) -> Iterator[tuple[str, str]]:
+    """The ports of a type of node that name an item for its child, and the item's type."""
+    ports = {port.name: port for port in kind.ports} if kind is not None else {}
+    for port in ports.values():
+        if port.item_of is not None:
+            yield port.name, ITEMS[ports[port.item_of].type.name].name
 
 
 def declared(model: Tag | None) -> dict[str, dict[str, Any]]:

@@ -9,10 +9,9 @@ from typing import Any
 import yaml
 
 from executive.core.errors import ConfigError, Problem
-from executive.tree.catalogue import BUILTINS
+from executive.tree.catalogue import node_types
 
 _WIDTH = 110
-_PORTLESS = frozenset(n.name for n in BUILTINS.values() if n.children == "one" and not n.ports)
 
 
 def tree_text(tree: Mapping[str, Any]) -> str:
@@ -55,7 +54,7 @@ def _short(node: Mapping[str, Any]) -> dict[str, Any]:
     short: Any = content
     if list(content) == ["children"]:
         short = content["children"]
-    elif list(content) == ["child"] and kind in _PORTLESS:
+    elif list(content) == ["child"] and kind in node_types() and node_types()[kind].bare_child:
         short = content["child"]
     return {kind: short, **{key: node[key] for key in beside}}
 

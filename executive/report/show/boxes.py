@@ -5,22 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from executive.tree.node_type import TREE_SYMBOL
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 
-SYMBOLS = {
-    "sequence": "→",
-    "selector": "?",
-    "parallel": "⇉",
-    "inverter": "¬",
-    "loop": "↺",
-    "retry": "↻",
-    "repeat": "⟳",
-    "for_each": "∀",
-    "timeout": "◷",
-    "recover": "✚",
-    "force_success": "✓",
-    "force_failure": "✗",
-}
 MAX_LINE, MAX_GUARD = 44, 72
 
 
@@ -37,7 +24,7 @@ class Tag:
 class Box:
     """One node to draw. Sizes and places are filled in by the layout [px].
 
-    `category` is control, decorator, recover, leaf or tree; `alternative` marks a strategy that the pool may
+    `category` is control, decorator, recovery, leaf or tree; `alternative` marks a strategy that the pool may
     choose; `frame` is the name of the tree whose nodes this box and those under it are; `outcome` is how the
     node ended, where known; `tags` stand at its foot.
     """
@@ -71,9 +58,9 @@ def boxes(
     strategies: Mapping[str, TreeSpec] | None = None,
     outcomes: Mapping[str, str] | None = None,
 ) -> Box:
-    """The boxes of a tree. `strategies` are what `recover` may choose; `outcomes` gives a word per path."""
+    """The boxes of a tree. `strategies` are what a `recover` may choose; `outcomes` gives a word per path."""
     maker = _Maker(strategies or {}, outcomes or {})
-    root = Box(tree.name, tree.name, "⌂", "tree", _doc_lines(tree.doc), frame=tree.name)
+    root = Box(tree.name, tree.name, TREE_SYMBOL, "tree", _doc_lines(tree.doc), frame=tree.name)
     root.outcome = maker.outcomes.get(tree.name)
     root.children = [maker.box(*root_of(tree.name, tree), tree)]
     return root
@@ -87,39 +74,41 @@ class _Maker:
         made = Box(
             path,
             node.name,
-            SYMBOLS.get(node.type, ""),
-            "recover" if node.type == "recover" else node.category,
+            node.kind.symbol,
+            "recovery" if node.kind.recovers else node.kind.category,
             _lines(node),
             tuple(_cut(f"{word}: {guard.text}", MAX_GUARD) for word, guard in node.guards.items()),
             outcome=self.outcomes.get(path),
         )
         if node.tree is not None:
-            made.frame, made.symbol = node.tree.name, "⌂"
+            made.frame = node.tree.name
             made.children = [self.box(*root_of(path, node.tree), node.tree)]
         else:
             made.children = [self.box(*child, around) for child in under(path, node.children)]
-        if node.type == "recover":
+        if node.kind.recovers:
             made.children += [
-                self.strategy(f"{path}/{name}", name, tree)
+                self.strategy(f"{path}/{name}", name, tree, made.symbol)
                 for name, tree in self.strategies.items()
                 if fits(tree, around.values)
             ]
         return made
 
-    def strategy(self, path: str, name: str, tree: TreeSpec) -> Box:
-        made = Box(path, name, "✚", "tree", _doc_lines(tree.doc), alternative=True, frame=tree.name)
+    def strategy(self, path: str, name: str, tree: TreeSpec, symbol: str) -> Box:
+        made = Box(path, name, symbol, "tree", _doc_lines(tree.doc), alternative=True, frame=tree.name)
         made.outcome = self.outcomes.get(path)
         made.children = [self.box(*root_of(path, tree), tree)]
         return made
 
 
 def _lines(node: NodeSpec) -> tuple[str, ...]:
+    """The type where the name does not say it, and the ports, but for fixed ones left at their default."""
     type_line = (node.type,) if node.name != node.type and node.tree is None else ()
-    hidden = {"memory": True, "policy": "all"}
+    usual = {port.name: port.default for port in node.kind.ports if port.fixed}
+    literals = node.literals
     shown = [
         f"{name}: {value}"
         for name, value in node.ports.items()
-        if not (name in hidden and getattr(value, "value", None) == hidden[name])
+        if not (name in usual and name in literals and literals[name] == usual[name])
     ]
     return tuple(_cut(line) for line in (*type_line, *shown))
 

@@ -6,29 +6,18 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator, Mapping
 
 from executive.core.units import written
-from executive.tree.catalogue import NodeType, node_types
-from executive.tree.nodes.base import REQUIRED, FromTree, PortSpec
+from executive.tree.groot import Attribute
+from executive.tree.node_type import NodeType
+from executive.tree.ports import REQUIRED, FromTree, PortSpec
 from executive.tree.spec import Literal, NodeSpec, TreeSpec
 
-NAMES = {
-    "sequence": "Sequence",
-    "selector": "Fallback",
-    "parallel": "Parallel",
-    "inverter": "Inverter",
-    "retry": "RetryUntilSuccessful",
-    "repeat": "Repeat",
-    "force_success": "ForceSuccess",
-    "force_failure": "ForceFailure",
-    "timeout": "Timeout",
-}
-REACTIVE = {"sequence": "ReactiveSequence", "selector": "ReactiveFallback"}
 GUARDS = {"skip_if": "_skipIf", "while": "_while", "success_if": "_successIf", "failure_if": "_failureIf"}
 
 
 def groot(tree: TreeSpec, strategies: Mapping[str, TreeSpec] | None = None) -> str:
     """The tree and every tree inside it. Strategies become trees of their own, which nothing refers to.
 
-    Own nodes (for_each, recover, leaves) are declared in the model, so that Groot2 shows their ports.
+    Nodes that BehaviorTree.CPP does not have are declared in the model, so that Groot2 shows their ports.
     """
     root = ET.Element("root", {"BTCPP_format": "4", "main_tree_to_execute": tree.name})
     trees = {t.name: t for top in (tree, *(strategies or {}).values()) for t in _trees(top)}
@@ -55,59 +44,42 @@ def _trees(tree: TreeSpec) -> Iterator[TreeSpec]:
 
 
 def _node(node: NodeSpec) -> ET.Element:
-    attributes = {"name": node.name} if node.name != node.type else {}
-    attributes |= {_port_name(node.type, port): _port_text(node, port) for port in node.ports}
-    attributes |= {GUARDS[word]: guard.text for word, guard in node.guards.items()}
+    named = {"name": node.name} if node.name != node.type else {}
+    guards = {GUARDS[word]: guard.text for word, guard in node.guards.items()}
     if node.tree is not None:
-        return ET.Element("SubTree", {"ID": node.tree.name} | attributes)
-    element = ET.Element(_tag(node), {k: v for k, v in attributes.items() if k != "memory"})
-    if node.type == "parallel":
-        del element.attrib["policy"]
-        element.set("success_count", "-1" if node.literal("policy") == "all" else "1")
-        element.set("failure_count", "1")
+        ports = {name: str(value) for name, value in node.ports.items()}
+        return ET.Element("SubTree", {"ID": node.tree.name} | named | ports | guards)
+    declared = node.kind.groot
+    ports = dict(_port(node, name) for name in node.ports if name not in declared.told_by_tag)
+    constants = {name: value for name, (value, _) in declared.constants.items()}
+    element = ET.Element(declared.written_as(node.literals), named | ports | constants | guards)
     element.extend(_node(child) for child in node.children)
     return element
 
 
-def _tag(node: NodeSpec) -> str:
-    if node.type in REACTIVE and not node.literal("memory"):
-        return REACTIVE[node.type]
-    return NAMES.get(node.type, node.type)
+def _port(node: NodeSpec, name: str) -> tuple[str, str]:
+    """The attribute that stands for a port, and its text."""
+    attribute, value = node.kind.groot.attributes.get(name, Attribute(name)), node.ports[name]
+    text = attribute.write(value.value) if isinstance(value, Literal) else None
+    return attribute.name, str(value) if text is None else text
 
 
-def _port_name(kind: str, port: str) -> str:
-    renamed = {
-        ("retry", "attempts"): "num_attempts",
-        ("repeat", "times"): "num_cycles",
-        ("timeout", "after"): "msec",
-    }
-    return renamed.get((kind, port), port)
-
-
-def _port_text(node: NodeSpec, port: str) -> str:
-    value = node.ports[port]
-    if node.type == "timeout" and isinstance(value, Literal) and isinstance(value.value, float):
-        return str(round(value.value * 1000))
-    if node.type == "repeat" and isinstance(value, Literal) and value.value is None:
-        return "-1"
-    return str(value)
-
-
-def _own_kinds(trees: Iterable[TreeSpec]) -> Iterator[NodeType]:
-    used: set[str] = set()
+def _own_kinds(trees: Iterable[TreeSpec]) -> Iterable[NodeType]:
+    """The types used that BehaviorTree.CPP does not have, in a stable order."""
+    used: dict[str, NodeType] = {}
     for tree in trees:
         stack = [tree.root]
         while stack:
             node = stack.pop()
             stack.extend(node.children)
-            used.add(node.type)
-    for name, kind in node_types().items():
-        if name in used and name not in NAMES:
-            yield kind
+            if node.tree is None and node.kind.groot.tag == node.type:
+                used[node.type] = node.kind
+    return [used[name] for name in sorted(used)]
 
 
 def _model(kind: NodeType) -> ET.Element:
-    tag = {"control": "Control", "decorator": "Decorator"}.get(kind.category, "Action")
+    leaf = "Condition" if kind.condition else "Action"
+    tag = {"control": "Control", "decorator": "Decorator"}.get(kind.category, leaf)
     return _ports(ET.Element(tag, {"ID": kind.name}), kind.ports)
 
 

@@ -17,7 +17,7 @@ class Paint:
 KINDS = {
     "control": Paint("#e8eef7", "#4a6fa5", "#2b4668"),
     "decorator": Paint("#f3ecf8", "#8a63a8", "#553a6b"),
-    "recover": Paint("#fdf0e1", "#c9802f", "#7d4c12"),
+    "recovery": Paint("#fdf0e1", "#c9802f", "#7d4c12"),
     "leaf": Paint("#e6f4f0", "#3c8d7a", "#1f5548"),
     "tree": Paint("#ffffff", "#5c6670", "#2a3138"),
 }

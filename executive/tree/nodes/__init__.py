@@ -1,1 +1,1 @@
-"""The leaves, a file each or a family of them; they are registered under `longarm.leaves`."""
+"""The types of node, a file each: control nodes and decorators, and leaves. All of them are registered."""

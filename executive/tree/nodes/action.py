@@ -6,7 +6,7 @@ from typing import Any
 
 from executive.core.ports import Action
 from executive.core.types import Outcome
-from executive.tree.nodes.base import Leaf
+from executive.tree.nodes.leaf import Leaf
 
 
 class ActionLeaf(Leaf):

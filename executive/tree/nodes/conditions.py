@@ -27,6 +27,8 @@ from executive.tree.nodes.base import In, Leaf
 class Facing(Leaf):
     """Does the rover face `target`? Also yes if going on as it faces misses it by less than `slack`."""
 
+    condition = True
+
     target = In[Point](POINT, "what to face")
     pose = In[PoseEstimate](POSE, "the pose")
     tolerance = In[float](ANGLE, "heading error allowed", default=math.radians(0.5))
@@ -45,6 +47,8 @@ class Facing(Leaf):
 class Arrived(Leaf):
     """Is the rover within the tolerance zone of `target`, its uncertainty allowed for?"""
 
+    condition = True
+
     target = In[Point](POINT, "the centre of the zone")
     pose = In[PoseEstimate](POSE, "the pose")
     within = In[float](LENGTH, "radius of the zone")
@@ -61,6 +65,8 @@ class Arrived(Leaf):
 
 class NotOvershot(Leaf):
     """Is `target` still ahead? Fails when it lies behind, near, and outside its tolerance zone."""
+
+    condition = True
 
     target = In[Point](POINT, "where the trek goes")
     pose = In[PoseEstimate](POSE, "the pose")
@@ -82,6 +88,8 @@ class NotOvershot(Leaf):
 class InsideMargin(Leaf):
     """Is the rover inside the off-track margin, its uncertainty allowed for?"""
 
+    condition = True
+
     pose = In[PoseEstimate](POSE, "the pose")
     segment = In[Segment](SEGMENT, "the segment under way")
     sigmas = In[float](NUMBER, "standard deviations to allow for", default=2.0)
@@ -100,6 +108,8 @@ class AsPredicted(Leaf):
 
     A marker lost or a poor view is none: the fix was had, and its covariance says how good it is.
     """
+
+    condition = True
 
     below = In[float](NUMBER, "weight an anomaly may have", default=0.6)
 

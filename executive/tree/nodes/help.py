@@ -16,7 +16,7 @@ class CallForHelp(ActionLeaf):
 
     needs = ("drive", "link")
     outcomes = (Reason.NO_STRATEGY,)
-    heeds_alarm = False  # whatever happens, ground is told
+    interruptible = False  # whatever happens, ground is told
 
     def request(self) -> Action[str]:
         self.services.devices[DRIVE].stop()

@@ -1,15 +1,35 @@
-"""Do something until a question is answered with yes."""
+"""Do something until a condition is met."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Composite
 
+from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities, only, where
+from executive.tree.nodes.control import Children, ControlNode, NodeContext
 
-class Loop(Composite):
+
+class Loop(ControlNode):
+    """Ask the first child; until it succeeds, run the second and ask again; fail when that fails."""
+
+    symbol = "↺"
+    children = Children.TWO
+    roles = ("the condition", "the action")
+
+    def make(self, children: Sequence[Behaviour], context: NodeContext) -> Behaviour:
+        until, do = children
+        return _Loop(context.name, until, do)
+
+    def abilities(self, inside: Sequence[Abilities]) -> Abilities:
+        until, do = inside
+        goes_on = FAILS in until and SUCCEEDS in do  # the condition is asked again in a later tick
+        return only(until, SUCCEEDS, RUNS) | only(do, FAILS, RUNS) | where(goes_on, RUNS)
+
+
+class _Loop(Composite):
     """Ask `until`; on failure run `do` and ask again; succeed when the answer is yes, fail when `do` fails.
 
     py_trees' Retry and Repeat both mix up a question's no with an action's failure; this does not.

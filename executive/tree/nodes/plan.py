@@ -90,7 +90,7 @@ class SetLeg(Leaf):
 class Compensate(Leaf):
     """Adopt the turning or advance ratio last seen as this soil's own, with fresh uncertainty."""
 
-    of = In[str](TEXT, "turning or advance")
+    of = In[str](TEXT, "the ratio to adopt", choices=("turning", "advance"))
 
     outcomes = (Reason.DONE, Reason.GUARD)
 

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Composite
 
 from executive.core.types import Outcome, Reason
-from executive.tree.nodes.base import Naming, Trace
+from executive.core.values import INTEGER, SEGMENT
+from executive.tree.abilities import FAILS, RUNS, Abilities, any_of, where
+from executive.tree.nodes import situation
+from executive.tree.nodes.control import Children, ControlNode, NodeContext
+from executive.tree.nodes.leaf import ErrorsOf
+from executive.tree.ports import In
+from executive.tree.trace import Trace
 
 Choose = Callable[[Outcome[object], frozenset[str]], str | None]
 """Asks the pool: the failure and the strategies at hand here; the one to try, or None to call home."""
@@ -18,7 +24,37 @@ Conclude = Callable[[bool, bool], None]
 """Tells the pool whether the strategy chosen last helped, and whether that was verified by the child."""
 
 
-class Recover(Composite):
+class Recover(ControlNode):
+    """Run the child; when it fails, let the pool choose a strategy, then run it again."""
+
+    symbol = "✚"
+    needs = ("drive",)
+    children = Children.ONE
+    recovers = True
+
+    attempts = In[int](INTEGER, "the most strategies to try", fixed=True, least=1)
+
+    def make(self, children: Sequence[Behaviour], context: NodeContext) -> Behaviour:
+        (child,) = children
+        services, segment = context.services, context.value("segment", SEGMENT)
+
+        def choose(failure: Outcome[object], at_hand: frozenset[str]) -> str | None:
+            return situation.choose(services, segment.read(), failure, at_hand)
+
+        def conclude(helped: bool, verified: bool) -> None:
+            situation.conclude(services, segment.read() if verified else None, helped)
+
+        made = context.strategies()
+        return _Recover(
+            context.name, context.path, context.trace, choose, conclude, self.attempts, child, made
+        )
+
+    def abilities(self, inside: Sequence[Abilities]) -> Abilities:
+        able = any_of(inside)
+        return able | where(FAILS in able, RUNS)
+
+
+class _Recover(Composite):
     """Runs `child`; at most `attempts` times it lets the pool answer a failure by one of `strategies`.
 
     A strategy helped when its own tree succeeded and the child, run again, did not fail for the same
@@ -92,7 +128,7 @@ class Recover(Composite):
         self.failure = failure
         if self.tried >= self.attempts:
             return self.give_up(f"{self.attempts} attempts used up")
-        with Naming(self.path):
+        with ErrorsOf(self.path):
             name = self.choose(failure, frozenset(self.strategies))
         if name is None:
             return self.give_up("no strategy fits")

@@ -28,6 +28,7 @@ from executive.core.values import (
 from executive.isc import Assessment, Readings
 from executive.pool import Situation
 from executive.tree.build import build
+from executive.tree.catalogue import node_types
 from executive.tree.load import load_tree_text
 from executive.tree.nodes.base import (
     FromTree,
@@ -36,7 +37,6 @@ from executive.tree.nodes.base import (
     Leaf,
     Out,
 )
-from executive.tree.nodes.kind import leaves
 
 
 class Act(Leaf):
@@ -91,7 +91,7 @@ class Measure(Leaf):
         return Outcome(Reason.DONE)
 
 
-class Pose(Leaf):
+class See(Leaf):
     """Read and write a pose."""
 
     pose = InOut(POSE, "the pose")
@@ -100,13 +100,7 @@ class Pose(Leaf):
         return Outcome(Reason.DONE)
 
 
-TEST_LEAVES: dict[str, type[Leaf]] = leaves() | {
-    "act": Act,
-    "note": Note,
-    "visit": Visit,
-    "measure": Measure,
-    "see": Pose,
-}
+TYPES = node_types((Act, Note, Visit, Measure, See))
 
 
 class ScriptedPool:
@@ -152,7 +146,7 @@ class Bench:
         self.services = services()
 
     def load(self, text: str):
-        return load_tree_text(text, "t.yaml", TEST_LEAVES)
+        return load_tree_text(text, "t.yaml", TYPES)
 
     def problems(self, text: str) -> list[str]:
         with pytest.raises(ConfigError) as caught:
@@ -163,7 +157,7 @@ class Bench:
         self.services = services(pool)
         made = {name: self.load(text) for name, text in (strategies or {}).items()}
         spec = self.load(f"tree: t\nports: {ports}\nroot: {root}\n")
-        return build(spec, self.services, inputs, made, TEST_LEAVES)
+        return build(spec, self.services, inputs, made)
 
     def run(self, tree: Any, ticks: int = 100) -> str:
         """Tick until the end (or so often); the last status."""

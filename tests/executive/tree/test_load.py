@@ -16,7 +16,7 @@ def in_tree(root, ports="{}"):
     [
         ("{wiat: {duration: 3 s}}", 't.yaml:3:8: got the unknown node "wiat", expected a node or a tree; did you mean "wait"?'),  # noqa: E501  (as it is printed)
         ("{wait: {durtion: 3 s, duration: 1 s}}", 't.yaml:3:15: got the unknown port "durtion" of wait, expected duration; did you mean "duration"?'),  # noqa: E501  (as it is printed)
-        ("{wait: {}}", 't.yaml:3:8: got no "duration" for wait, expected how long to wait (duration)'),
+        ("{wait: {}}", 't.yaml:3:8: wait needs "duration": how long to wait (duration)'),
         ("{wait: {duration: 3}}", "t.yaml:3:25: got 3 without a unit, expected a duration such as '36 s'"),
         ("{wait: {duration: 3 m}}", "t.yaml:3:25: got '3 m' (a length), expected a duration such as '36 s'"),
         ("{act: {ticks: 1.5}}", "t.yaml:3:21: got 1.5, expected a whole number"),
@@ -24,8 +24,8 @@ def in_tree(root, ports="{}"):
         ("{visit: {target: 3 m}}", 't.yaml:3:24: got "3 m", expected a reference to a Point such as {x}'),
         ("{note: {value: '{depth}'}}", "t.yaml:3:22: got {depth}, which is neither a port of this tree nor written in it, expected one that is"),  # noqa: E501  (as it is printed)
         ("{sequence: []}", "t.yaml:3:18: got a list of 0 as children of sequence, expected a list of nodes"),
-        ("{inverter: {}}", "t.yaml:3:8: got no child for inverter, expected exactly one"),
-        ("{retry: {attempts: 2}}", "t.yaml:3:8: got no child for retry, expected exactly one"),
+        ("{inverter: {}}", "t.yaml:3:8: inverter needs one child"),
+        ("{retry: {attempts: 2}}", "t.yaml:3:8: retry needs one child"),
         ("{retry: {attempts: 0, child: act}}", "t.yaml:3:26: got 0, expected 1 or more"),
         ("{parallel: {policy: any, children: [act]}}", 't.yaml:3:27: got "any", expected all or one'),
         ("{act: {}, wait: {duration: 1 s}}", "t.yaml:3:7: got act or wait, expected exactly one node type beside name, skip_if, while, success_if or failure_if"),  # noqa: E501  (as it is printed)
@@ -116,7 +116,7 @@ def test_ports_of_a_sub_tree_are_checked_like_those_of_a_leaf(trees):
     with pytest.raises(ConfigError) as caught:
         load_tree("outer")
     assert [p.message for p in caught.value.problems] == [
-        'got no "depth" for inner, expected a value (length)',
+        'inner needs "depth": a value (length)',
         'got the unknown port "dept" of inner, expected depth; did you mean "depth"?',
     ]
 

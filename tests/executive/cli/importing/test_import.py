@@ -184,7 +184,7 @@ def test_every_problem_is_told_at_once_at_its_place_in_the_xml(tmp_path):
             'got the unknown port "qualty" of localise, expected quality, pose, segment, budget, position, '
             'yaw or settle; did you mean "quality"?',
         ),
-        (9, 7, "got no child for inverter, expected exactly one"),
+        (9, 7, "inverter needs one child"),
         (11, 20, 'got the unknown node "nowhere", expected a node or a tree'),
     ]
 

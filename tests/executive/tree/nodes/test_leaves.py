@@ -31,6 +31,7 @@ from executive.record.bus import EventBus
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.testing import FakeBackend, FakeWorld, OverheadLocalizer
+from executive.tree.catalogue import node_types
 from executive.tree.nodes.base import (
     Constant,
     Leaf,
@@ -38,7 +39,6 @@ from executive.tree.nodes.base import (
     Store,
     Trace,
 )
-from executive.tree.nodes.kind import leaves
 from executive.tree.nodes.services import Services
 
 SEGMENT = Segment(Point(2.0, 0.0), Point(3.0, 0.0), 0.03, 0.25, 0.03)
@@ -57,6 +57,9 @@ class Ended:
         return self.outcome
 
     def cancel(self) -> None: ...
+
+
+TYPES: dict[str, type[Leaf]] = {name: kind.leaf for name, kind in node_types().items() if kind.leaf}
 
 
 class Bench:
@@ -104,20 +107,20 @@ class Bench:
         )
         given = {"pose": self.classification.predicted().on(SEGMENT), "segment": SEGMENT, **values}
         bindings = {}
-        for port in leaves()[kind].ports():
+        for port in TYPES[kind].ports():
             if port.direction.value == "in":
                 bindings[port.name] = Constant(given.get(port.name, port.default))
             else:
                 bindings[port.name] = Slot(self.store, port.name)
                 bindings[port.name].write(given.get(port.name))
         if kind not in self.leaves:
-            self.leaves[kind] = leaves()[kind](kind, kind, services, bindings, self.trace)
+            self.leaves[kind] = TYPES[kind](kind, kind, services, bindings, self.trace)
         leaf = self.leaves[kind]
         ended: list[Outcome[object]] = []
-        self.trace.note = lambda path, outcome: ended.append(outcome)
         for _ in range(PATIENCE_TICKS):
             self.classification.tracker.sense(self.backend.devices)
             leaf.tick_once()
+            ended.extend(self.trace.take_ended().values())
             if ended:
                 break
             self.backend.advance()
@@ -182,7 +185,7 @@ def turned_in_vain(bench: Bench) -> None:
 
 
 def alarmed(bench: Bench) -> None:
-    bench.trace.alarm = Outcome(Reason.DEVICE, "as told")
+    bench.trace.raise_alarm(Outcome(Reason.DEVICE, "as told"))
 
 
 def jumped(bench: Bench) -> None:
@@ -220,7 +223,7 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("localise", Reason.DONE, nothing, {}),
     *(
         ("localise", reason, sees(reason), {"quality": Quality.PRECISE})
-        for reason in leaves()["localise"].outcomes
+        for reason in TYPES["localise"].outcomes
         if reason is not Reason.DONE
     ),
     ("not_overshot", Reason.DONE, nothing, {"target": AHEAD, "within": 0.03}),
@@ -276,5 +279,5 @@ def test_a_leaf_ends_for_the_reason_it_declares(
 
 
 def test_every_declared_outcome_of_every_leaf_has_its_case() -> None:
-    declared = {(name, reason) for name, leaf in leaves().items() for reason in leaf.outcomes}
+    declared = {(name, reason) for name, leaf in TYPES.items() for reason in leaf.outcomes}
     assert {(kind, reason) for kind, reason, *_ in CASES} == declared

@@ -1,0 +1,27 @@
+"""Failure, whatever happens."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from py_trees import decorators
+from py_trees.behaviour import Behaviour
+
+from executive.tree.abilities import FAILS, RUNS, Abilities, any_of, only, where
+from executive.tree.groot import Groot
+from executive.tree.nodes.control import Children, ControlNode, NodeContext
+
+
+class ForceFailure(ControlNode):
+    """Failure however the child ends."""
+
+    symbol = "✗"
+    children = Children.ONE
+    groot = Groot("ForceFailure")
+
+    def make(self, children: Sequence[Behaviour], context: NodeContext) -> Behaviour:
+        (child,) = children
+        return decorators.SuccessIsFailure(context.name, child)
+
+    def abilities(self, inside: Sequence[Abilities]) -> Abilities:
+        return only(any_of(inside), RUNS) | where(True, FAILS)

@@ -1,0 +1,27 @@
+"""Success, whatever happens."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from py_trees import decorators
+from py_trees.behaviour import Behaviour
+
+from executive.tree.abilities import RUNS, SUCCEEDS, Abilities, any_of, only, where
+from executive.tree.groot import Groot
+from executive.tree.nodes.control import Children, ControlNode, NodeContext
+
+
+class ForceSuccess(ControlNode):
+    """Success however the child ends."""
+
+    symbol = "✓"
+    children = Children.ONE
+    groot = Groot("ForceSuccess")
+
+    def make(self, children: Sequence[Behaviour], context: NodeContext) -> Behaviour:
+        (child,) = children
+        return decorators.FailureIsSuccess(context.name, child)
+
+    def abilities(self, inside: Sequence[Abilities]) -> Abilities:
+        return only(any_of(inside), RUNS) | where(True, SUCCEEDS)

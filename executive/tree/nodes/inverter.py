@@ -1,0 +1,28 @@
+"""No for yes, and yes for no."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from py_trees import decorators
+from py_trees.behaviour import Behaviour
+
+from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities, any_of, only, where
+from executive.tree.groot import Groot
+from executive.tree.nodes.control import Children, ControlNode, NodeContext
+
+
+class Inverter(ControlNode):
+    """Success for failure, and failure for success."""
+
+    symbol = "¬"
+    children = Children.ONE
+    groot = Groot("Inverter")
+
+    def make(self, children: Sequence[Behaviour], context: NodeContext) -> Behaviour:
+        (child,) = children
+        return decorators.Inverter(context.name, child)
+
+    def abilities(self, inside: Sequence[Abilities]) -> Abilities:
+        able = any_of(inside)
+        return only(able, RUNS) | where(SUCCEEDS in able, FAILS) | where(FAILS in able, SUCCEEDS)
