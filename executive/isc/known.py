@@ -21,8 +21,3 @@ def known_channels() -> tuple[Channel, ...]:
 def hypothesis_names() -> tuple[str, ...]:
     """The names that weights have, the nominal one first."""
     return (NOMINAL, *(hypothesis.name for hypothesis in known_hypotheses()))
-
-
-def channel_names() -> tuple[str, ...]:
-    """The names that evidence has."""
-    return tuple(channel.name for channel in known_channels())
