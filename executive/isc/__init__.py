@@ -9,7 +9,6 @@ from executive.isc.bank import NOMINAL, Evidence, HypothesisBank, Weights
 from executive.isc.classification import Classification
 from executive.isc.comparison import Comparison, Innovation, SinceFix
 from executive.isc.known import (
-    channel_names,
     hypothesis_names,
     known_channels,
     known_hypotheses,
@@ -37,7 +36,6 @@ __all__ = [
     "Sensed",
     "SinceFix",
     "Weights",
-    "channel_names",
     "hypothesis_names",
     "known_channels",
     "known_hypotheses",

@@ -30,8 +30,3 @@ def _fits(needs: tuple[str, ...], devices: Collection[str] | None) -> bool:
 def hypothesis_names() -> tuple[str, ...]:
     """The names that weights have, the nominal one first."""
     return (NOMINAL, *(hypothesis.name for hypothesis in known_hypotheses()))
-
-
-def channel_names() -> tuple[str, ...]:
-    """The names that evidence has."""
-    return tuple(channel.name for channel in known_channels())

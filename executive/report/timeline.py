@@ -6,6 +6,7 @@ import numpy as np
 
 from executive.core.types import Array
 from executive.record.events import HypothesesEvent
+from executive.record.history import At
 from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, thinned, time_axis, timed
 from executive.report.figure import Figure, duration
@@ -88,15 +89,33 @@ def hypotheses(run: Run) -> Figure | None:
         _area(chart, times, upper[k] - weights[k], upper[k], colour, name)
         for k, (name, colour) in enumerate(zip(names, palette.SERIES, strict=False))
     ]
-    body = [*areas, time_axis(time, 24, 180), chart.frame("weight", [0.0, 0.5, 1.0], 1)]
+    ahead = _margins_ahead(time, events)
+    body = [*areas, time_axis(time, 24, 180), chart.frame("weight", [0.0, 0.5, 1.0], 1), *ahead]
     drawn = svg.drawing(_WIDTH, 204, body, aria_label="Weights of the hypotheses", **timed(time, 24, 180))
     entries = [("solid", c, n.replace("_", " ")) for n, c in zip(names, palette.SERIES, strict=False)]
+    entries += [("solid", palette.BAD, "off-track margin ahead")] if ahead else []
     caption = (
         "What the in-situ classification held likely. The weights sum to 1; a hypothesis that takes over "
         "the pale nominal area is the diagnosis from which a strategy is chosen. Those never above 0.05 are "
-        "left out."
+        "left out. Dots: a choice among strategies (hover for when the off-track margin would be crossed)."
     )
     return Figure("hypotheses", "Hypotheses", legend(entries) + drawn, caption)
+
+
+def _margins_ahead(time: Scale, events: list[At[HypothesesEvent]]) -> list[str]:
+    """A dot where it was extrapolated that, going on like this, the off-track margin would be crossed."""
+    return [
+        svg.element(
+            "circle",
+            svg.title(f"at {duration(at.time_s)}: off-track margin in {duration(left_s)}"),
+            cx=time(at.time_s),
+            cy=18,
+            r=3,
+            fill=palette.BAD,
+        )
+        for at in events
+        if (left_s := at.event.time_to_margin_s) is not None
+    ]
 
 
 def _likely(events: list[HypothesesEvent]) -> list[str]:

@@ -34,7 +34,7 @@ PLUGIN = """
 def test_a_strategy_module_of_old_imports_and_checks_itself(tmp_path: Path) -> None:
     module = tmp_path / "wait_for_light.py"
     module.write_text(textwrap.dedent(PLUGIN))
-    module.with_suffix(".yaml").write_text("tree: wait_for_light\nroot: {wait: {time: 300 s}}\n")
+    module.with_suffix(".yaml").write_text("tree: wait_for_light\nroot: {wait: {duration: 300 s}}\n")
     spec = importlib.util.spec_from_file_location("wait_for_light", module)
     loaded = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(loaded)

@@ -17,7 +17,14 @@ from executive.core.types import (
     Reason,
     Segment,
 )
-from executive.isc import Assessment, Classification, Readings, correction, known_channels, known_hypotheses
+from executive.isc import (
+    Assessment,
+    Classification,
+    Readings,
+    correction,
+    known_channels,
+    known_hypotheses,
+)
 from executive.isc.motion import ADVANCE, YAW_EFFICIENCY
 from executive.testing import FakeBackend, FakeWorld
 from tests.executive.isc.test_prediction import pose
@@ -42,10 +49,9 @@ class Bench:
 
     def pull(self, tension_n: float) -> None:
         """Let the tether be felt like this."""
-        tether = self.backend.devices[TETHER].read()
+        tether = replace(self.backend.devices[TETHER].read(), tension_n=tension_n)
         sensed = self.mind.tracker.sense(self.backend.devices)
-        tether = replace(tether, tension_n=tension_n)
-        readings = Readings({**sensed.readings.by_device, "tether": tether})
+        readings = Readings({**sensed.readings.by_device, TETHER.name: tether})
         self.mind.tracker.sensed = replace(sensed, tether=tether, readings=readings)
 
     def fix(self, markers: int = 4) -> PoseEstimate:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from executive.pool import DEFAULT_POLICY, FIRST_FITTED, Decision, Policy, Pool, known_policy, policy_names
+from executive.pool.known import broken_by_policy
 from tests.executive.pool.test_pool import SEGMENT, situation, strategy
 
 CHEAP = strategy("cheap", {"overshoot": 1.0}, cost_s=10.0)
@@ -55,6 +56,16 @@ def test_a_policy_of_ones_own_decides_and_says_why() -> None:
     last = Policy("last", "The least fit.", lambda options, s, memory: Decision(options[-1].strategy, "last"))
     choice = Pool((FIT, replace(FIT, name="dear", cost_s=900.0)), lambda note: None, last).choose(SLIP)
     assert (choice.strategy, choice.why, choice.hypothesis) == ("dear", "last", "slip_turning")
+
+
+def test_a_broken_policy_is_named_with_its_breaches() -> None:
+    broken = Policy("in turn", " ", "by turns")
+    assert list(broken_by_policy(broken)) == [
+        "got the name 'in turn', expected an identifier",
+        "it does not say how it chooses (doc)",
+        "it chooses by 'by turns', expected something to call",
+    ]
+    assert not list(broken_by_policy(FIRST_FITTED))
 
 
 def test_a_strategy_that_answers_reasons_only_is_tried_against_the_likeliest_anomaly() -> None:
