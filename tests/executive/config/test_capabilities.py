@@ -26,7 +26,7 @@ def test_a_node_without_its_device_is_a_problem_at_its_place(folder):
     (folder / "trees" / "go.yaml").write_text(LOOKING)
     scenario = folder / "scenarios" / "dark.yaml"
     assert check_file(scenario) == ()
-    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare"))
+    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare\nlocalizer: guess"))
     assert [str(problem) for problem in check_file(scenario)] == [
         'trees/go.yaml:6:7: point_head needs the device "head", which the backend bare does not have: '
         "battery, drive"
@@ -48,7 +48,7 @@ def test_a_strategy_without_its_devices_is_not_for_this_robot():
 
 def test_the_rig_of_a_scenario_is_the_backends_own(folder):
     scenario = folder / "scenarios" / "dark.yaml"
-    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare"))
+    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare\nlocalizer: guess"))
     resolved = resolve_scenario(
         scenario, overrides=["rig.rover.track_gauge=28 cm", "rig.rover.tether_limit=4 N"]
     )
@@ -60,7 +60,7 @@ def test_the_rig_of_a_scenario_is_the_backends_own(folder):
 
 def test_a_rig_without_a_tether_is_dumped_without_a_limit(folder):
     scenario = folder / "scenarios" / "dark.yaml"
-    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare"))
+    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare\nlocalizer: guess"))
     resolved = resolve_scenario(scenario)
     assert "tether_limit" not in resolved.dump()
     (folder / "dumped.yaml").write_text(resolved.dump())
