@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr
 
+from executive.core.ordered_sum import ordered_sum
 from sim_pybullet.leds import Spot
 from sim_pybullet.radiometry import Exposure, line_spread, spread_reach_px
 
@@ -79,7 +80,7 @@ def centre_error(
 
 def joint_chance(errors: Sequence[CentreError]) -> float:
     """Chance that a coded shot shows all markers at once, from one camera; the other sees the same."""
-    joint_snr = math.sqrt(2 * sum(error.snr**2 for error in errors))
+    joint_snr = math.sqrt(2 * ordered_sum(error.snr**2 for error in errors))
     return float(ndtr(joint_snr - JOINT_THRESHOLD))
 
 

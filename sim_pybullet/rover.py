@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from executive.core.ordered_sum import ordered_sum
 from executive.core.rig import RigCalibration
 from executive.core.types import Array, Quat, Vec3
 from sim_pybullet.bullet import pybullet
@@ -147,12 +148,9 @@ class RoverBody:
 
     def _pressed(self, shoe: int, up_site: list[float]) -> float:
         contacts = pybullet.getContactPoints(bodyA=self.id, linkIndexA=shoe, physicsClientId=self.client)
-        return sum(
-            (
-                float(c[9]) * max(0.0, sum(n * u for n, u in zip(c[7], up_site, strict=True)))
-                for c in contacts
-            ),
-            0.0,
+        return ordered_sum(
+            float(c[9]) * max(0.0, ordered_sum(n * u for n, u in zip(c[7], up_site, strict=True)))
+            for c in contacts
         )
 
     def hold_cabin(self, arm_rad: float, cabin_rad: float) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import executive
@@ -12,7 +13,9 @@ from executive.config.validate import guess
 from executive.core.errors import ConfigError
 from executive.core.registry import current_project
 
-INSTALLED = Path(executive.__file__).parent.parent
+ROOT = Path(executive.__file__).parent.parent
+PACKED = ROOT / "longarm" / "data"  # where a wheel has the folders that lie at the top of a checkout
+INSTALLED = PACKED if PACKED.is_dir() else ROOT
 SUFFIXES = ("", ".yaml", ".yml")
 _MARKS = ("campaign", "scenario", "mission", "tree")
 """The keys that name a file's kind; the first that it has says which it is."""
@@ -34,6 +37,18 @@ def find(kind: str, reference: str, folder: Path, mark: Mark, working: Path | No
             return candidate.absolute()
     message = f'got "{reference}", expected a file or a name in {kind}/'
     raise ConfigError([mark.problem(message + guess(reference, names(kind, working, folder)))])
+
+
+def given(reference: Path, *kinds: str) -> Path:
+    """What a command was given: a path, or where no file lies there, the bare name of one of these kinds.
+
+    The reference itself where there is neither, for whoever reads it to say so.
+    """
+    if not _is_file(reference) and len(reference.parts) == 1:
+        for kind in kinds:
+            with suppress(ConfigError):
+                return Path(shown(find(kind, str(reference), Path.cwd(), Mark(str(reference), 1, 1))))
+    return reference
 
 
 def names(kind: str, working: Path | None = None, folder: Path | None = None) -> list[str]:

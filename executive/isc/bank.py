@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from executive.core.ordered_sum import ordered_sum
 from executive.isc.comparison import Comparison
 from executive.isc.likelihoods import Measured
 from executive.isc.specs import Channel, Concern, Hypothesis
@@ -69,7 +70,7 @@ class HypothesisBank:
         return name == NOMINAL or self.concern(name) is Concern.SIGHT
 
     def _prior(self) -> dict[str, float]:
-        total = sum(hypothesis.prior for hypothesis in self.hypotheses.values())
+        total = ordered_sum(hypothesis.prior for hypothesis in self.hypotheses.values())
         shares = {n: ANOMALIES_PRIOR * h.prior / total for n, h in self.hypotheses.items()}
         return {NOMINAL: NOMINAL_PRIOR, **shares}
 
@@ -81,5 +82,5 @@ class HypothesisBank:
 
 
 def _normalised(weights: Weights) -> dict[str, float]:
-    total = sum(weights.values())
+    total = ordered_sum(weights.values())
     return {name: weight / total for name, weight in weights.items()}

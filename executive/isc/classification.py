@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from executive.core.clock import Clock
+from executive.core.ordered_sum import ordered_sum
 from executive.core.rig import Rig
 from executive.core.types import Outcome, PoseEstimate, Reason, Segment
 from executive.isc import correction
@@ -72,7 +73,8 @@ class Classification:
         self._weigh(comparison)
         if self.tracker.inflated:  # measured again: a false fix would not have repeated itself
             self.weights = self.bank.without(self.weights, Concern.FIX)
-        explained = sum(w for name, w in self.weights.items() if self.bank.moves_as_predicted(name)) > 0.5
+        as_predicted = (w for name, w in self.weights.items() if self.bank.moves_as_predicted(name))
+        explained = ordered_sum(as_predicted) > 0.5
         if explained:
             self._remember_current()
         self.tracker.take_in(fix, explained)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+from executive.core.ordered_sum import ordered_sum
 from executive.core.types import PoseEstimate, Reason
 from executive.isc.correction import innovate
 from executive.isc.likelihoods import Measured
@@ -36,7 +37,8 @@ class Innovation:
         c, s = math.cos(heading), math.sin(heading)
         along, cross = c * innovation[0] + s * innovation[1], -s * innovation[0] + c * innovation[1]
         across = (-s, c)
-        sigma_cross = math.sqrt(sum(across[i] * spread[i, j] * across[j] for i in (0, 1) for j in (0, 1)))
+        terms = (across[i] * spread[i, j] * across[j] for i in (0, 1) for j in (0, 1))
+        sigma_cross = math.sqrt(ordered_sum(terms))
         sigma_along = math.sqrt(max(spread[0, 0] + spread[1, 1] - sigma_cross**2, 1e-12))
         sigma_heading = math.sqrt(spread[2, 2])
         return cls(float(along), float(cross), float(innovation[2]), sigma_along, sigma_cross, sigma_heading)

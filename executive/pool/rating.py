@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from executive.core.errors import StrategyRaised
+from executive.core.ordered_sum import ordered_sum
 from executive.pool.memory import Memory
 from executive.pool.situation import Situation
 from executive.pool.strategy import Strategy
@@ -14,7 +15,8 @@ LEAST_FITNESS = 0.1  # below this a remedy is a shot in the dark; ground decides
 def relevance(strategy: Strategy, situation: Situation) -> float:
     """How well it answers what is likely and what failed."""
     weights = situation.assessment.weights
-    explained = sum(w * a for h, a in strategy.answers.items() if (w := weights.get(h, 0.0)) >= LEAST_WEIGHT)
+    likely = ((weights.get(h, 0.0), a) for h, a in strategy.answers.items())
+    explained = ordered_sum(weight * answers for weight, answers in likely if weight >= LEAST_WEIGHT)
     return explained + strategy.reasons.get(situation.failure.reason, 0.0)
 
 

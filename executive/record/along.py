@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from executive.core.ordered_sum import ordered_sum
 from executive.core.types import PoseEstimate, PoseSource, Segment
 from executive.record.events import SegmentEvent, WaypointEvent
 
@@ -28,13 +29,13 @@ class AlongRoute:
     @property
     def length_m(self) -> float:
         """Of the whole route [m]."""
-        return sum(s.length_m for s in self._route)
+        return ordered_sum(s.length_m for s in self._route)
 
     def behind_m(self) -> float:
         """How much of the route lies behind the rover [m]."""
         if self._segment is None or self._pose is None:
             return 0.0
-        behind = sum(s.length_m for s in self._route[: self._segment.index])
+        behind = ordered_sum(s.length_m for s in self._route[: self._segment.index])
         along = self._segment.offset(self._pose.x_m, self._pose.y_m).along_m
         return behind + min(max(along, 0.0), self._segment.length_m)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.metadata import PackageNotFoundError, version
 
-BEARING = ("longarm", "numpy", "scipy", "opencv-python-headless", "pybullet", "py_trees")
+BEARING = ("longarm", "numpy", "scipy", "opencv-python-headless", "pybullet", "pybullet-arm64", "py_trees")
 
 
 def versions(packages: tuple[str, ...] = BEARING) -> dict[str, str]:

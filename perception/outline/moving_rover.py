@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from executive.core.ordered_sum import ordered_sum
 from executive.core.types import (
     LEFT,
     RIGHT,
@@ -247,7 +248,7 @@ class _Search:
 
 def _fit(lies: Sequence[Lie]) -> float:
     """How well outlines fit, of all cameras."""
-    return sum(lie.alike for lie in lies)
+    return ordered_sum(lie.alike for lie in lies)
 
 
 def _halved(edges: Picture) -> Picture:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from executive.core.ordered_sum import ordered_sum
 from executive.core.types import Array
 from perception.geometry.body import Transform
 from perception.geometry.rotation import exp_map
@@ -127,7 +128,7 @@ def align(
 
 def _cost(matches: Sequence[Match], sigmas: Sequence[Array], start: Start, parameters: Array) -> float:
     known = (parameters - start.mean) / start.sigma
-    images = sum(float(_huber(m.residual[0] / s).sum()) for m, s in zip(matches, sigmas, strict=True))
+    images = ordered_sum(float(_huber(m.residual[0] / s).sum()) for m, s in zip(matches, sigmas, strict=True))
     return images / _ALIKE + float(known @ known)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from executive.core.ordered_sum import ordered_sum
 from executive.core.types import Array
 from perception.geometry.body import Transform
 from perception.geometry.chain import Chain
@@ -92,8 +93,8 @@ def judged(
 
 def _explained(best: Aligned, scenes: Sequence[Scene]) -> float:
     """Share of the change against the background that rover and shadow account for."""
-    changed = sum(float(((s.image - s.background.counts) ** 2).sum()) for s in scenes)
-    left = sum(float((m.residual[0] ** 2).sum()) for m in best.matches)
+    changed = ordered_sum(float(((s.image - s.background.counts) ** 2).sum()) for s in scenes)
+    left = ordered_sum(float((m.residual[0] ** 2).sum()) for m in best.matches)
     return 1 - left / max(changed, 1e-9)
 
 

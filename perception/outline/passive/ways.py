@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from executive.core.ordered_sum import ordered_sum
 from executive.core.types import Array
 from perception.outline.passive.alignment import Aligned, Start, align
 from perception.outline.passive.drawing import Stands
@@ -79,7 +80,7 @@ def chosen(ways: Sequence[Way], focal_px: float) -> tuple[Way, float]:
 
     They are compared by the weights of both, as each thinks well of itself by its own.
     """
-    costs = [sum(way.cost_by(by, focal_px) for by in ways) / len(ways) for way in ways]
+    costs = [ordered_sum(way.cost_by(by, focal_px) for by in ways) / len(ways) for way in ways]
     best, *others = sorted(zip(costs, ways, strict=True), key=lambda pair: pair[0])
     leads = [cost - best[0] for cost, way in others if _apart(best[1].aligned, way.aligned)]
     return best[1], min(leads, default=math.inf)
