@@ -12,6 +12,7 @@ HERE = Path(__file__).parent
 ADDED = {
     "value_types": ("mass", "MASS"),
     "leaves": ("weigh_sample", "WeighSample"),
+    "control_nodes": ("once", "Once"),
     "backends": ("twin", "TWIN"),
     "faults": ("hum", "HUM"),
     "strategies": ("sit_still", "STRATEGY"),
@@ -55,6 +56,7 @@ root:
     - weigh_sample: {scoop: 40 mm, sample: "{sample}"}
     - wait: {duration: 10 s}
       skip_if: "{sample} > {full}"
+    - once: {wait: {duration: 1 s}}
 """
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import click
+from py_trees import common, decorators
 from pydantic import BaseModel, ConfigDict
 
 from executive.testing import BACKEND
@@ -13,6 +14,8 @@ from longarm import (
     NUMBER,
     POSE,
     Channel,
+    Children,
+    ControlNode,
     Decision,
     DeviceSpec,
     Fault,
@@ -47,6 +50,15 @@ class WeighSample(Leaf):
     def step(self):
         self.sample = 2.0 * self.scoop
         return Outcome(Reason.DONE, "weighed")
+
+
+class Once(ControlNode):
+    """Run the child, and not again once it has succeeded."""
+
+    children = Children.ONE
+
+    def make(self, children, context):
+        return decorators.OneShot(context.name, children[0], common.OneShotPolicy.ON_SUCCESSFUL_COMPLETION)
 
 
 TWIN = replace(BACKEND, name="twin", doc="The fake robot under another name.")
@@ -156,6 +168,7 @@ __all__ = [
     "THERMOMETER",
     "TWIN",
     "WATCHER",
+    "Once",
     "WeighSample",
     "greet",
 ]

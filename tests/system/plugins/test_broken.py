@@ -10,6 +10,11 @@ from tests.system.plugins.conftest import ADDED, HERE, install
 BROKEN = {
     "value_types": ("mass", 'ValueType("mass", dict)', "value type mass: a dict has no literals"),
     "leaves": ("weigh_sample", 'type("WeighSample", (Leaf,), {})', "leaf weigh_sample: it does not say what"),
+    "control_nodes": (
+        "once",
+        'type("Once", (ControlNode,), {})',
+        "control node once: it does not say what it does",
+    ),
     "backends": (
         "twin",
         'BackendSpec("twin", "A robot.", dict, (), ("drive",), dict, dict)',
@@ -117,6 +122,7 @@ def test_asking_for_a_broken_one_is_bad_input(plain, kind, capsys):
 USES = {
     "value_types": ("weigh.yaml", "3:44"),
     "leaves": ("weigh.yaml", "6:7"),
+    "control_nodes": ("weigh.yaml", "9:7"),
     "backends": ("outside.yaml", "3:10"),
     "faults": ("outside.yaml", "14:5"),
     "strategies": ("outside.yaml", "16:33"),
