@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pydantic import BaseModel, ConfigDict, Field
 from typing import Annotated
 from executive.config.backends import BackendSpec
+from executive.config.localizers import LocalizerSpec
 from executive.run.fault import Fault, FaultSpec
 from executive.core.device_spec import DeviceSpec, Quantity
 from executive.core.rig import RigCalibration
@@ -59,6 +60,7 @@ BATTERY = DeviceSpec(
 BARE = BackendSpec(
     "bare", "On wheels.", World, ("full", "geometric"), ("drive", "battery"), BareRig, lambda request: None
 )
+BLIND = LocalizerSpec("blind", "Sees nothing.", ("guess",), lambda request: None, needs=())
 LAMP_OFF = FaultSpec("lamp_off", "A lamp goes out.", LampOff, lambda lamp: Fault(), "marker_lost")
 DAYLIGHT = FaultSpec(
     "daylight", "Too bright.", LampOff, lambda lamp: Fault(), "poor_view", ("plain",), ("full",), lasting=True
@@ -73,6 +75,8 @@ bare = third_party_plugin:BARE
 broken = third_party_plugin:MISSING
 [longarm.devices]
 battery = third_party_plugin:BATTERY
+[longarm.localizers]
+blind = third_party_plugin:BLIND
 [longarm.faults]
 lamp_off = third_party_plugin:LAMP_OFF
 daylight = third_party_plugin:DAYLIGHT
