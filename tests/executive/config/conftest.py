@@ -60,7 +60,7 @@ BATTERY = DeviceSpec(
 BARE = BackendSpec(
     "bare", "On wheels.", World, ("full", "geometric"), ("drive", "battery"), BareRig, lambda request: None
 )
-GUESS = LocalizerSpec("guess", "Guesses.", ("guess",), lambda request: None, needs=("drive",))
+BLIND = LocalizerSpec("blind", "Sees nothing.", ("guess",), lambda request: None, needs=())
 LAMP_OFF = FaultSpec("lamp_off", "A lamp goes out.", LampOff, lambda lamp: Fault(), "marker_lost")
 DAYLIGHT = FaultSpec(
     "daylight", "Too bright.", LampOff, lambda lamp: Fault(), "poor_view", ("plain",), ("full",), lasting=True
@@ -73,10 +73,10 @@ plain = third_party_plugin:BACKEND
 poor = third_party_plugin:POOR
 bare = third_party_plugin:BARE
 broken = third_party_plugin:MISSING
-[longarm.localizers]
-guess = third_party_plugin:GUESS
 [longarm.devices]
 battery = third_party_plugin:BATTERY
+[longarm.localizers]
+blind = third_party_plugin:BLIND
 [longarm.faults]
 lamp_off = third_party_plugin:LAMP_OFF
 daylight = third_party_plugin:DAYLIGHT

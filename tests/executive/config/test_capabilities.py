@@ -22,11 +22,14 @@ root:
 """
 
 
+ON_WHEELS = "backend: bare\nlocalizer: blind"
+
+
 def test_a_node_without_its_device_is_a_problem_at_its_place(folder):
     (folder / "trees" / "go.yaml").write_text(LOOKING)
     scenario = folder / "scenarios" / "dark.yaml"
     assert check_file(scenario) == ()
-    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare\nlocalizer: guess"))
+    scenario.write_text(scenario.read_text().replace("backend: plain", ON_WHEELS))
     assert [str(problem) for problem in check_file(scenario)] == [
         'trees/go.yaml:6:7: point_head needs the device "head", which the backend bare does not have: '
         "battery, drive"
@@ -39,6 +42,18 @@ def test_a_device_that_serves_as_a_drive_is_enough_to_drive():
     assert len(missing(tree, fake_with("cameras"))) == 1
 
 
+def test_a_localizer_without_its_devices_or_rig_is_refused(folder):
+    scenario = folder / "scenarios" / "dark.yaml"
+    scenario.write_text(
+        scenario.read_text().replace("backend: plain", "backend: bare\nlocalizer: led_stereo")
+    )
+    with pytest.raises(ConfigError) as caught:
+        resolve_scenario(scenario)
+    told = str(caught.value)
+    assert "led_stereo needs cameras, head, cabin, inclinometer, which the backend bare does not have" in told
+    assert "led_stereo needs a RigCalibration, the backend bare has a BareRig" in told
+
+
 def test_a_strategy_without_its_devices_is_not_for_this_robot():
     trees = strategy_trees(load_strategies())
     assert unfit(trees, BACKEND) == {}
@@ -48,7 +63,7 @@ def test_a_strategy_without_its_devices_is_not_for_this_robot():
 
 def test_the_rig_of_a_scenario_is_the_backends_own(folder):
     scenario = folder / "scenarios" / "dark.yaml"
-    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare\nlocalizer: guess"))
+    scenario.write_text(scenario.read_text().replace("backend: plain", ON_WHEELS))
     resolved = resolve_scenario(
         scenario, overrides=["rig.rover.track_gauge=28 cm", "rig.rover.tether_limit=4 N"]
     )
@@ -60,7 +75,7 @@ def test_the_rig_of_a_scenario_is_the_backends_own(folder):
 
 def test_a_rig_without_a_tether_is_dumped_without_a_limit(folder):
     scenario = folder / "scenarios" / "dark.yaml"
-    scenario.write_text(scenario.read_text().replace("backend: plain", "backend: bare\nlocalizer: guess"))
+    scenario.write_text(scenario.read_text().replace("backend: plain", ON_WHEELS))
     resolved = resolve_scenario(scenario)
     assert "tether_limit" not in resolved.dump()
     (folder / "dumped.yaml").write_text(resolved.dump())
