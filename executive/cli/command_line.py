@@ -101,14 +101,14 @@ def run(
     Example: longarm run missions/first_traverse.yaml --seed 3 --set "world.light.sun_elevation=20 deg"
     """
     from executive.cli import summary
-    from executive.config.find import given
+    from executive.config.find import located
     from executive.run import app
     from executive.run.instruments import broken_instruments
     from executive.tree.strategies import broken_strategies
 
     for broken in () if quiet else (*broken_strategies(), *broken_instruments()):
         click.echo(f"longarm: the run does without {broken}", err=True)
-    file = given(file, "scenarios", "missions")
+    file = located(file, "scenarios", "missions")
     finished = app.run(file, app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json)))
     if as_json:
         click.echo(json.dumps(finished.result.to_json(), indent=2))
@@ -175,10 +175,10 @@ def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
 
     Example: longarm check trees/*.yaml missions/*.yaml --format sarif
     """
-    from executive.config.find import given
+    from executive.config.find import located
     from executive.run import check as checking
 
-    files = tuple(given(file, "scenarios", "missions", "trees", "campaigns") for file in files)
+    files = tuple(located(file, "scenarios", "missions", "trees", "campaigns") for file in files)
     missing = [file for file in files if not file.is_file()]
     for file in missing:
         click.echo(

@@ -39,7 +39,7 @@ def find(kind: str, reference: str, folder: Path, mark: Mark, working: Path | No
     raise ConfigError([mark.problem(message + guess(reference, names(kind, working, folder)))])
 
 
-def given(reference: Path, *kinds: str) -> Path:
+def located(reference: Path, *kinds: str) -> Path:
     """What a command was given: a path, or where no file lies there, the bare name of one of these kinds.
 
     The reference itself where there is neither, for whoever reads it to say so.

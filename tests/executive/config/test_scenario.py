@@ -5,7 +5,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from executive.config.find import find, names
+from executive.config.find import find, located, names
 from executive.config.mission import load_mission
 from executive.config.source import Mark
 from executive.config.validate import listed
@@ -238,6 +238,18 @@ def test_bare_names_are_found_in_folders_within_too(tmp_path, monkeypatch):
     assert names("scenarios", tmp_path) == ["jam"]
     (tmp_path / "scenarios" / "jam.yaml").touch()
     assert find("scenarios", "jam", tmp_path, mark, tmp_path) == tmp_path / "scenarios" / "jam.yaml"
+
+
+def test_a_command_may_be_given_a_bare_name(tmp_path, monkeypatch):
+    monkeypatch.setattr("executive.config.find.INSTALLED", tmp_path / "installed")
+    monkeypatch.chdir(tmp_path)
+    mission = tmp_path / "installed" / "missions" / "hop.yaml"
+    mission.parent.mkdir(parents=True)
+    mission.touch()
+    assert located(Path("hop"), "scenarios", "missions").resolve() == mission
+    assert located(Path("hip"), "scenarios", "missions") == Path("hip")
+    Path("hop").touch()
+    assert located(Path("hop"), "scenarios", "missions") == Path("hop")
 
 
 words = st.sampled_from(
