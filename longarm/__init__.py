@@ -1,7 +1,4 @@
-"""What authors of plug-ins write against (docs/plugins.md). It is stable; deeper imports are private.
-
-Devices and signals join here.
-"""
+"""What authors of plug-ins write against (docs/plugins.md). It is stable; deeper imports are private."""
 
 from __future__ import annotations
 
@@ -41,10 +38,13 @@ from executive.core.values import (
     SEGMENT,
     SPEED,
     TEXT,
+    ValueAttribute,
     ValueType,
 )
 from executive.isc import Categorical, Channel, Comparison, Concern, Gaussian, Hypothesis, Measured
 from executive.pool import Decision, Memory, Option, Policy, Situation, Strategy
+from executive.record.events import DeviceReading, Telemetry, WaypointEvent
+from executive.record.signal import Signal
 from executive.run.fault import Cue, Fault, FaultSpec
 from executive.run.instrument import Context, Instrument, InstrumentSpec, Judgement, Records, TreeParts
 from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities
@@ -111,6 +111,7 @@ __all__ = [
     "ControlNode",
     "Cue",
     "Decision",
+    "DeviceReading",
     "DeviceSpec",
     "Devices",
     "Ended",
@@ -152,12 +153,16 @@ __all__ = [
     "Records",
     "Reporter",
     "Segment",
+    "Signal",
     "Situation",
     "Strategy",
+    "Telemetry",
     "TreeParts",
+    "ValueAttribute",
     "ValueType",
     "Variant",
     "Verb",
+    "WaypointEvent",
     "check_backend",
     "check_channel",
     "check_fault",

@@ -8,9 +8,8 @@ from typing import Any
 
 from executive.config.source import Mark
 from executive.config.validate import guess, listed
-from executive.core.attributes import attribute_of
 from executive.core.errors import Problem
-from executive.core.values import NUMBER, ValueType
+from executive.core.values import NUMBER, ValueType, attribute_of
 from executive.tree.expressions.guards import Guard
 from executive.tree.expressions.typed import GuardError
 from executive.tree.ports import Direction, PortSpec

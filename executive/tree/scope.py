@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from executive.core.attributes import read_attribute
-from executive.core.values import ValueType
+from executive.core.values import ValueType, read_attribute
 from executive.tree.ports import REQUIRED, Direction, FromTree, PortSpec
 from executive.tree.spec import Literal, PortValue
 from executive.tree.store import Binding, Constant, Slot, Store

@@ -13,9 +13,8 @@ import numpy as np
 
 from executive.config.validate import guess, listed
 from executive.core import units
-from executive.core.attributes import attribute_of
 from executive.core.units import Dimension
-from executive.core.values import ValueType
+from executive.core.values import ValueType, attribute_of
 
 Read = Callable[[str, tuple[str, ...]], Any]
 """Gives the value of a reference: its name and attributes."""

@@ -17,6 +17,7 @@ ADDED = {
     "faults": ("hum", "HUM"),
     "strategies": ("sit_still", "STRATEGY"),
     "devices": ("thermometer", "THERMOMETER"),
+    "signals": ("heat", "HEAT"),
     "channels": ("bumps", "BUMPS"),
     "hypotheses": ("rough_ground", "ROUGH"),
     "policies": ("last_first", "LAST_FIRST"),

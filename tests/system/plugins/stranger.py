@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 from executive.testing import BACKEND
 from longarm import (
+    DURATION,
     LENGTH,
     NUMBER,
     POSE,
@@ -17,6 +18,7 @@ from longarm import (
     Children,
     ControlNode,
     Decision,
+    DeviceReading,
     DeviceSpec,
     Fault,
     FaultSpec,
@@ -33,11 +35,21 @@ from longarm import (
     Quantity,
     Reason,
     Reporter,
+    Signal,
     Strategy,
+    ValueAttribute,
     ValueType,
 )
 
-MASS = ValueType("mass", float, "kg")
+MASS = ValueType(
+    "mass",
+    float,
+    "kg",
+    attributes={
+        "grams": ValueAttribute(NUMBER, lambda kg: 1000.0 * kg),
+        "patience": ValueAttribute(DURATION, lambda kg: 100.0 * kg),
+    },
+)
 
 
 class WeighSample(Leaf):
@@ -64,6 +76,9 @@ class Once(ControlNode):
 TWIN = replace(BACKEND, name="twin", doc="The fake robot under another name.")
 THERMOMETER = DeviceSpec(
     "thermometer", "How warm it is.", object, quantities=(Quantity("celsius", NUMBER, "inside", float),)
+)
+HEAT = Signal(
+    "heat", NUMBER, (DeviceReading,), lambda reading: reading.values.get("celsius"), "how hot it is"
 )
 
 
@@ -157,6 +172,7 @@ OVERHEAD_TOO = LocalizerSpec(
 
 __all__ = [
     "BUMPS",
+    "HEAT",
     "HUM",
     "LAST_FIRST",
     "MASS",

@@ -6,6 +6,8 @@ import pytest
 
 from executive.cli import invoke
 from executive.core import registry
+from executive.record import History
+from executive.record.events import NodeChange
 from tests.system.plugins.conftest import ADDED
 
 
@@ -52,6 +54,45 @@ def test_files_that_use_it_are_checked(outside, capsys):
     tree.write_text(tree.read_text().replace("40 mm", "40 kg"))
     assert invoke(["check", "weigh.yaml"]) == 1
     assert "weigh.yaml:6:29:" in capsys.readouterr().out
+
+
+ASKING = """\
+tree: weigh
+ports: {route: {type: Route}}
+root:
+  sequence:
+    - weigh_sample: {scoop: 40 mm, sample: "{sample}"}
+    - wait: {duration: "{sample.patience}"}
+      skip_if: "{sample.grams} > GRAMS"
+"""
+
+
+@pytest.mark.parametrize(("grams", "waits"), [("90", True), ("70", False)])
+def test_attributes_of_its_values_are_read_in_ports_and_guards(outside, grams, waits):
+    (outside / "weigh.yaml").write_text(ASKING.replace("GRAMS", grams))
+    assert invoke(["run", "outside.yaml", "--set", "faults=[]", "--out", "out", "--quiet"]) == 0
+    changes = History.of(outside / "out" / "record.mcap").all(NodeChange)
+    of_wait = {at.event.status: at.time_s for at in changes if at.event.path.endswith("wait")}
+    assert ("success" in of_wait) == waits
+    assert not waits or of_wait["success"] - of_wait["running"] == 8.0
+
+
+@pytest.mark.parametrize("where", ['duration: "{sample.patience}"', "{sample.grams}"])
+def test_an_unknown_attribute_of_its_value_is_told_with_the_known(outside, where, capsys):
+    wrong = where.replace("sample.", "sample.un")
+    (outside / "weigh.yaml").write_text(ASKING.replace("GRAMS", "90").replace(where, wrong))
+    assert invoke(["check", "weigh.yaml"]) == 1
+    assert "of a mass, expected grams or patience" in capsys.readouterr().out
+
+
+def test_its_signal_triggers_and_is_expected(outside, capsys):
+    scenario = outside / "outside.yaml"
+    text = scenario.read_text().replace("from: {time: 2 s}", "from: {when: heat > 30}")
+    scenario.write_text(text.replace("expect: {", "expect: {eventually: heat > 40, "))
+    said(capsys, "check", "outside.yaml")
+    scenario.write_text(text.replace("heat > 30", "heet > 30"))
+    assert invoke(["check", "outside.yaml"]) == 1
+    assert 'did you mean "heat"?' in capsys.readouterr().out
 
 
 def test_it_is_drawn_and_in_the_schemas(outside, capsys):

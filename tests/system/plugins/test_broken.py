@@ -35,6 +35,7 @@ BROKEN = {
         'DeviceSpec("thermometer", "", object)',
         "device thermometer: it does not say what it is",
     ),
+    "signals": ("heat", 'Signal("heat", TEXT, (), print, "Heat.")', "signal heat: a text is no number"),
     "channels": (
         "bumps",
         'Channel("bumps", "", "", Gaussian(0, 1), print)',
