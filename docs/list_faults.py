@@ -17,24 +17,24 @@ PAGE = Path(__file__).parent / "faults.md"
 HEAD = """\
 # Faults
 
-What can be injected into a scenario, told by the faults' own declarations (`python docs/list_faults.py`).
-`longarm faults NAME` tells the same of one, third-party plug-ins included; `longarm schema scenario` gives
-editors all of it. Onsets (`from`), durations (`for`), profiles and groups: see the
+The faults that a scenario can inject, generated from their declarations (`python docs/list_faults.py`).
+`longarm faults NAME` prints one of them, third-party plug-ins included; `longarm schema scenario` gives
+editors all of them. Onsets (`from`), durations (`for`), profiles and groups: see the
 [tutorial](tutorials/3-a-scenario-with-faults.md).
 
-A fault is in the record three times: when its onset came, when it first altered anything, and when it was
-over. One that never altered anything makes the run `invalid`.
+The record has three entries for a fault: when its onset came, when it first altered anything, and when it
+ended. A fault that never altered anything makes the run `invalid`.
 """
 
 
 def page() -> str:
     """The whole page."""
-    told = entries("faults")
-    by_category = sorted(told, key=lambda name: (CATEGORIES.index(told[name]["category"]), name))
+    faults = entries("faults")
+    by_category = sorted(faults, key=lambda name: (CATEGORIES.index(faults[name]["category"]), name))
     parts = [HEAD]
-    for category, names in groupby(by_category, key=lambda name: told[name]["category"]):
+    for category, names in groupby(by_category, key=lambda name: faults[name]["category"]):
         parts.append(f"## {category.capitalize()}\n")
-        parts += [_entry(name, told[name]) for name in names]
+        parts += [_entry(name, faults[name]) for name in names]
     return "\n".join(parts)
 
 
@@ -50,6 +50,7 @@ def _entry(name: str, fault: dict[str, Any]) -> str:
 
 def _row(parameter: dict[str, Any]) -> str:
     default = "required" if parameter["required"] else f"`{parameter['default']}`"
+    default = "none" if parameter["default"] is None and not parameter["required"] else default
     return f"| `{parameter['name']}` | {parameter['kind']} | {default} | {parameter['doc']} |"
 
 

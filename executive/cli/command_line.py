@@ -229,7 +229,7 @@ def show(tree: str, form: str, output: Path | None) -> int:
 @click.option("-o", "--output", type=FILE, default=Path("trees"), show_default=True, help="Where to write.")
 @click.option("--force", is_flag=True, help="Replace files that are there already.")
 def import_(file: Path, output: Path, force: bool) -> int:
-    """Turn BehaviorTree.CPP v4 XML into tree files, one a tree; what reads a little differently is told.
+    """Turn BehaviorTree.CPP v4 XML into tree files, one per tree; semantic differences are reported.
 
     Example: longarm import mission.xml -o trees
     """

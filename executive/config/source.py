@@ -151,7 +151,7 @@ def _text(path: Path, start: Mark) -> str:
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         raise ConfigError([start.problem(f"cannot be read: {error}")]) from None
     if len(content) > MAX_BYTES:
-        raise ConfigError([start.problem(f"got more than {MAX_BYTES} bytes, expected a file for people")])
+        raise ConfigError([start.problem("file exceeds 1 MB, the limit for YAML input")])
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -155,5 +155,7 @@ def _port_line(port: Page) -> str:
 
 
 def _parameter_line(parameter: Parameter) -> str:
-    default = "required" if parameter.required else f"default {parameter.default}"
-    return f"  {parameter.name}: {parameter.kind}, {default}   {parameter.doc}"
+    default = ", required" if parameter.required else f", default {parameter.default}"
+    if parameter.default is None and not parameter.required:
+        default = "" if parameter.kind.endswith("optional") else ", optional"
+    return f"  {parameter.name}: {parameter.kind}{default}   {parameter.doc}"

@@ -41,7 +41,7 @@ def read_markup(path: Path) -> Tag:
     except OSError as error:
         raise ConfigError([start.problem(f"cannot be read: {error.strerror}")]) from None
     if len(content) > MAX_BYTES:
-        raise ConfigError([start.problem(f"got more than {MAX_BYTES} bytes, expected a file for people")])
+        raise ConfigError([start.problem("file exceeds 1 MB, the limit for XML input")])
     return _Reader(start.file, content).read()
 
 

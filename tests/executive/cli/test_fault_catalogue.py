@@ -39,6 +39,13 @@ def test_a_fault_tells_where_it_can_act_and_what_must_be_said(capsys):
     assert "  side: left or right, required   which track\n" in capsys.readouterr().out
 
 
+def test_optional_numbers_and_lists_are_shown_with_their_bounds(capsys):
+    assert invoke(["faults", "led_dim"]) == 0
+    out = capsys.readouterr().out
+    assert "  marker: integer 0–3, optional   one LED, counted from 0\n" in out
+    assert "  markers: list of 1–4 integers 0–3, optional" in out
+
+
 def test_a_default_is_written_as_a_file_would_have_it():
     from proving.faults.estimation import Shift
 

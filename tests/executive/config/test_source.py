@@ -67,7 +67,7 @@ def test_a_missing_file_a_folder_and_a_huge_one_are_located(tmp_path):
     for path, message in [
         (tmp_path / "none.yaml", "no such file"),
         (tmp_path, "got a folder, expected a YAML file"),
-        (huge, f"got more than {MAX_BYTES} bytes, expected a file for people"),
+        (huge, "file exceeds 1 MB, the limit for YAML input"),
     ]:
         with pytest.raises(ConfigError) as caught:
             read(path)
