@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from executive.core.clock import Clock
-from executive.core.types import Point, Segment
+from longarm import Point, Segment
 
 from yard_robot.config import GroundConfig, StartConfig, YardConfig
 from yard_robot.rig import YardRig

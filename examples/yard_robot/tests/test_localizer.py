@@ -7,9 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from executive.core.ports import LocaliseRequest
-from executive.core.types import PoseEstimate, Quality, Reason, Source
 from executive.isc.attitude import quat_from_heading_tilt
+from longarm import LocaliseRequest, PoseEstimate, PoseSource, Quality, Reason
 
 from yard_robot.localizer import MarkerLocalizer
 from yard_robot.marker_box import FACES
@@ -18,7 +17,7 @@ from yard_robot.marker_box import FACES
 def expected(x_m=5.0, y_m=0.0, heading=0.0, sigma_m=0.05) -> PoseEstimate:
     covariance = np.diag([sigma_m**2] * 3 + [0.01] * 3)
     quat = quat_from_heading_tilt(heading, 0.0, 0.0)
-    return PoseEstimate(0.0, (x_m, y_m, 0.0), quat, covariance, Source.PREDICTION)
+    return PoseEstimate(0.0, (x_m, y_m, 0.0), quat, covariance, PoseSource.PREDICTION)
 
 
 def locate(world, pose):
@@ -32,14 +31,14 @@ def locate(world, pose):
 
 
 def test_robot_is_found_where_it_is_expected(world):
-    fix = locate(world, expected()).value
+    fix = locate(world, expected()).value.pose
     assert (fix.x_m, fix.y_m) == pytest.approx((5.0, 0.0), abs=0.03)
     assert fix.heading_rad == pytest.approx(0.0, abs=math.radians(1.0))
     assert world.eye.taken == 1
 
 
 def test_robot_elsewhere_is_found_by_a_second_look(world):
-    fix = locate(world, expected(x_m=8.0, y_m=2.0)).value
+    fix = locate(world, expected(x_m=8.0, y_m=2.0)).value.pose
     assert (fix.x_m, fix.y_m) == pytest.approx((5.0, 0.0), abs=0.05)
     assert world.eye.taken == 2
 

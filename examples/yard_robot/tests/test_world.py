@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from executive.core.ports import Action
-from executive.core.types import Outcome, Reason
+from longarm import Action, Outcome, Reason
 
 from yard_robot.config import YardConfig
 from yard_robot.world import World

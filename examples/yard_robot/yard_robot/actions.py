@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from executive.core.types import Outcome, Reason
+from longarm import Outcome, Reason
 
 T = TypeVar("T")
 

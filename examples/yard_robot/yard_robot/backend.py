@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from executive.config.backends import BackendRequest, BackendSpec
 from executive.core.clock import Clock, Stopwatch
 from executive.core.devices import INCLINOMETER, LINK
-from executive.core.errors import LongarmError
-from executive.core.ports import Devices
+from longarm import BackendRequest, BackendSpec, Devices, LongarmError
 
 from yard_robot.config import YardConfig
 from yard_robot.devices import BATTERY, POLE_CAMERA, WHEELS
@@ -73,4 +71,5 @@ BACKEND = BackendSpec(
     devices=("wheels", "battery", "pole_camera", "inclinometer", "link"),
     rig=YardRig,
     create=YardBackend,
+    strategies=("adopt_slip", "show_another_face", "wait_and_look", "back_up", "recharge"),
 )

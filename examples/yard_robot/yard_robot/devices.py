@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Protocol
 
-from executive.core.device_spec import DeviceSpec, Quantity, Verb
 from executive.core.devices import DRIVE
 from executive.core.ports import Drive
 from executive.core.types import Window
-from executive.core.values import NUMBER, ValueType
+from longarm import NUMBER, DeviceSpec, Quantity, ValueType, Verb
 
 from yard_robot.battery import BatteryReading
 from yard_robot.eye import Eye

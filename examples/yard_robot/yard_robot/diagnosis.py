@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from executive.core.types import Reason
-from executive.isc import Categorical, Channel, Comparison, Concern, Gaussian, Hypothesis, Measured
+from longarm import Categorical, Channel, Comparison, Concern, Gaussian, Hypothesis, Measured, Reason
 
 from yard_robot.battery import BatteryReading
 
@@ -13,13 +12,16 @@ def _charge(seen: Comparison) -> Measured[float] | None:
     return None if reading is None else Measured(reading.charge)
 
 
-CHARGE = Channel("charge", "State of charge of the battery, 0 to 1.", "", Gaussian(0.65, 0.2), _charge)
+CHARGE = Channel(
+    "charge", "State of charge of the battery, 0 to 1.", "", Gaussian(0.65, 0.2), _charge, ("battery",)
+)
 
 BATTERY_LOW = Hypothesis(
     "battery_low",
     "The battery will not carry the robot to the end of its way.",
     {"charge": Gaussian(0.15, 0.08)},
     concerns=Concern.SIGHT,  # it says nothing of how the robot moved
+    needs=("battery",),
 )
 
 WHEEL_SLIP = Hypothesis(
@@ -31,6 +33,7 @@ WHEEL_SLIP = Hypothesis(
         "current_ratio": Gaussian(0.6, 0.3),
     },
     prior=2.0,
+    needs=("wheels",),
 )
 
 MARKER_COVERED = Hypothesis(
@@ -39,4 +42,5 @@ MARKER_COVERED = Hypothesis(
     {"failure": Categorical(frozenset({Reason.NOT_SEEN}), 0.7, 0.01)},
     prior=3.0,
     concerns=Concern.SIGHT,
+    needs=("pole_camera",),
 )

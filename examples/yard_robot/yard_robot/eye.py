@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from executive.core.clock import Clock
-from executive.core.ports import Action
-from executive.core.types import Outcome, Reason, Window
+from executive.core.types import Window
+from longarm import Action, Outcome, Reason
 
 from yard_robot.actions import DeviceAction
 from yard_robot.pole_camera import Image

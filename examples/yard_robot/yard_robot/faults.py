@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
-from executive.core.errors import LongarmError
-from executive.core.ports import Backend
 from executive.core.units import Fraction, Power
-from executive.run.fault import Fault, FaultSpec
+from longarm import Backend, Fault, FaultSpec, LongarmError
 from pydantic import BaseModel, ConfigDict, Field
 
 from yard_robot.backend import YardBackend

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from executive.core.types import Segment
+from longarm import Segment
 
 from yard_robot.config import GroundConfig
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from executive.core.clock import Clock
-from executive.core.ports import Action
-from executive.core.types import Call, Outcome, Reason
+from executive.core.types import Call
+from longarm import Action, Outcome, Reason
 
 from yard_robot.actions import DeviceAction
 

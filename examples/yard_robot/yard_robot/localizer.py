@@ -5,11 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from executive.core.clock import Clock
-from executive.core.errors import LongarmError
-from executive.core.ports import Action, Devices, LocaliseRequest
-from executive.core.rig import Rig
-from executive.core.types import Outcome, PoseEstimate, Reason, Source, Vec2, View, Window
+from executive.core.types import Vec2, Window
+from longarm import (
+    Action,
+    CameraView,
+    Localisation,
+    LocaliseRequest,
+    LocalizerRequest,
+    LocalizerSpec,
+    Outcome,
+    PoseEstimate,
+    Reason,
+)
 from scipy.spatial.transform import Rotation
 
 from yard_robot.detection import DARK_COUNTS, brightness, find_markers
@@ -21,6 +28,7 @@ from yard_robot.pole_camera import project, window_around
 from yard_robot.rig import YardRig
 
 LARGEST_SIGMA_M, LARGEST_SIGMA_RAD = 0.06, math.radians(2.0)
+SOURCE = "yard_markers"
 _MARGIN_PX, _SIGMAS = 25.0, 4.0
 
 
@@ -29,15 +37,10 @@ class MarkerLocalizer:
 
     def __init__(self, eye: Eye, rig: YardRig) -> None:
         self._eye, self._rig = eye, rig
-        self._looked: tuple[View, ...] = ()
 
-    def locate(self, request: LocaliseRequest) -> Action[PoseEstimate]:
+    def locate(self, request: LocaliseRequest) -> Action[Localisation]:
         """Measure the pose; fails with the reason why there is none, never with a guess."""
         return _Looking(self, request)
-
-    def views(self) -> tuple[View, ...]:
-        """What the last localisation looked at."""
-        return self._looked
 
     def pointing(self, pose: PoseEstimate) -> Vec2:
         """A fixed camera points where it points."""
@@ -57,17 +60,18 @@ class MarkerLocalizer:
         """Take a picture."""
         return self._eye.expose(window)
 
-    def judge(self, picture: Picture) -> Outcome[PoseEstimate]:
+    def judge(self, picture: Picture) -> Outcome[Localisation]:
         """What a picture says of the robot's pose."""
         seen = find_markers(picture.counts, picture.window)
         found = solve(self._rig.camera, self._rig.box, seen)
-        self._looked = (_view(picture, seen, None if isinstance(found, str) else self._shown(found, seen)),)
+        views = (_view(picture, seen, None if isinstance(found, str) else self._shown(found, seen)),)
         if isinstance(found, MarkerPose):
-            return _accepted(_estimate(found, picture.time_s))
+            fix = _estimate(found, picture.time_s)
+            return _accepted(Localisation(fix, views), fix)
         light = brightness(picture.counts)
         if light < DARK_COUNTS:
-            return Outcome(Reason.UNSTABLE_IMAGES, f"too dark: {light:.0f} counts")
-        return Outcome(Reason.NOT_SEEN, found)
+            return Outcome(Reason.UNSTABLE_IMAGES, f"too dark: {light:.0f} counts", Localisation(None, views))
+        return Outcome(Reason.NOT_SEEN, found, Localisation(None, views))
 
     def _shown(self, found: MarkerPose, seen: dict[str, Array]) -> Array:
         """Where the pose found puts the corners of the markers seen [px]."""
@@ -75,11 +79,19 @@ class MarkerLocalizer:
         return project(self._rig.camera, found.position_m + body_m @ found.rotation.T)
 
 
-def make_localizer(devices: Devices, rig: Rig, clock: Clock) -> MarkerLocalizer:
-    """The localizer on a robot's devices."""
-    if not isinstance(rig, YardRig):
-        raise LongarmError(f"got a rig of type {type(rig).__name__}, expected a YardRig")
-    return MarkerLocalizer(devices[POLE_CAMERA], rig)
+def _make(request: LocalizerRequest) -> MarkerLocalizer:
+    return MarkerLocalizer(request.devices[POLE_CAMERA], request.rig)
+
+
+YARD_MARKERS = LocalizerSpec(
+    name="yard_markers",
+    doc="ArUco markers on the robot's box, seen by the fixed camera.",
+    sources=(SOURCE,),
+    make=_make,
+    tiers=("full",),
+    needs=("pole_camera",),
+    rig=YardRig,
+)
 
 
 class _Looking:
@@ -89,9 +101,9 @@ class _Looking:
         self._localizer = localizer
         self._windows = list(localizer.windows(request.predicted))
         self._exposing = localizer.expose(self._windows.pop(0))
-        self._outcome: Outcome[PoseEstimate] | None = None
+        self._outcome: Outcome[Localisation] | None = None
 
-    def poll(self) -> Outcome[PoseEstimate] | None:
+    def poll(self) -> Outcome[Localisation] | None:
         """The outcome, or None while under way."""
         taken = self._exposing.poll() if self._outcome is None else None
         if taken is None:
@@ -124,21 +136,21 @@ def _estimate(found: MarkerPose, time_s: float) -> PoseEstimate:
     x, y, z = found.position_m.tolist()
     qx, qy, qz, qw = Rotation.from_matrix(found.rotation).as_quat().tolist()
     return PoseEstimate(
-        time_s, (x, y, z), (qx, qy, qz, qw), found.covariance, Source.MARKERS, markers=len(found.faces)
+        time_s, (x, y, z), (qx, qy, qz, qw), found.covariance, SOURCE, markers=len(found.faces)
     )
 
 
-def _accepted(fix: PoseEstimate) -> Outcome[PoseEstimate]:
+def _accepted(seen: Localisation, fix: PoseEstimate) -> Outcome[Localisation]:
     """The fix, if it is good enough to drive by."""
     if fix.sigma_position_m > LARGEST_SIGMA_M:
-        return Outcome(Reason.POOR_VIEW, f"sigma {fix.sigma_position_m * 1e3:.0f} mm")
+        return Outcome(Reason.POOR_VIEW, f"sigma {fix.sigma_position_m * 1e3:.0f} mm", seen)
     if fix.sigma_heading_rad > LARGEST_SIGMA_RAD:
-        return Outcome(Reason.POOR_VIEW, f"sigma {math.degrees(fix.sigma_heading_rad):.1f} deg")
-    return Outcome(Reason.DONE, value=fix)
+        return Outcome(Reason.POOR_VIEW, f"sigma {math.degrees(fix.sigma_heading_rad):.1f} deg", seen)
+    return Outcome(Reason.DONE, value=seen)
 
 
-def _view(picture: Picture, seen: dict[str, Array], shown: Array | None) -> View:
+def _view(picture: Picture, seen: dict[str, Array], shown: Array | None) -> CameraView:
     nothing = np.empty((0, 2))
     detected = np.concatenate([*seen.values()]) if seen else nothing
     reprojected = nothing if shown is None else shown
-    return View(picture.window, picture.counts.astype(np.float32), detected, reprojected)
+    return CameraView(picture.window, picture.counts.astype(np.float32), detected, reprojected)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from executive.core.types import Outcome, Reason
-from executive.core.values import DURATION, NUMBER
-from executive.tree.nodes.base import In, Leaf
+from longarm import DURATION, NUMBER, In, Leaf, Outcome, Reason
 
 from yard_robot.devices import BATTERY
 

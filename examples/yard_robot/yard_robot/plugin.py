@@ -4,6 +4,7 @@ from yard_robot.backend import BACKEND
 from yard_robot.devices import BATTERY, POLE_CAMERA, POWER, WHEELS
 from yard_robot.diagnosis import BATTERY_LOW, CHARGE, MARKER_COVERED, WHEEL_SLIP
 from yard_robot.faults import BATTERY_DRAIN, CAMERA_DARK, COVERED, SLIPPING
+from yard_robot.localizer import YARD_MARKERS
 from yard_robot.nodes import CheckBattery, RechargeWait
 from yard_robot.strategies import ADOPT_SLIP, BACK_UP, RECHARGE, SHOW_ANOTHER_FACE, WAIT_AND_LOOK
 
@@ -26,6 +27,7 @@ __all__ = [
     "WAIT_AND_LOOK",
     "WHEELS",
     "WHEEL_SLIP",
+    "YARD_MARKERS",
     "CheckBattery",
     "RechargeWait",
 ]

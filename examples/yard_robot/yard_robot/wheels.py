@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 from executive.core.clock import Clock
-from executive.core.ports import Action
-from executive.core.types import Outcome, Reason, TrackReading
+from executive.core.types import TrackReading
+from longarm import Action, Outcome, Reason
 
 from yard_robot.actions import DeviceAction, PerTick
 

@@ -8,7 +8,8 @@ from collections.abc import Callable
 import numpy as np
 from executive.core.chance import generator
 from executive.core.clock import Clock
-from executive.core.types import Segment, TiltReading, Window
+from executive.core.types import TiltReading, Window
+from longarm import Segment
 
 from yard_robot.actions import PerTick
 from yard_robot.battery import Battery

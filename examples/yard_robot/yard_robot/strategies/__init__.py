@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from executive.core.types import Reason
-from executive.pool import Strategy
+from longarm import Reason, Strategy
 
 _HERE = Path(__file__).parent
 
