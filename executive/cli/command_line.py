@@ -68,7 +68,7 @@ def _deepest(error: BaseException) -> str:
 
 @click.group(cls=CatalogueGroup, context_settings={"help_option_names": ["-h", "--help"]})
 def cli() -> None:
-    """Longarm: a rover led by its lander's stereo head, run by a behaviour tree.
+    """Longarm: a behaviour-tree executive that drives a robot alone, with a pool of recovery strategies.
 
     Example: longarm run missions/first_traverse.yaml
     """
