@@ -67,6 +67,7 @@ def _deepest(error: BaseException) -> str:
 
 
 @click.group(cls=CatalogueGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="longarm", prog_name="longarm")
 def cli() -> None:
     """Longarm: a behaviour-tree executive that drives a robot alone, with a pool of recovery strategies.
 

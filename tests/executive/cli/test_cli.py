@@ -1,4 +1,5 @@
 import json
+import re
 
 import pytest
 
@@ -104,3 +105,8 @@ def test_unknown_options_are_usage_errors(capsys):
     assert invoke(["check", "--fromat", "json"]) == 2
     assert invoke(["nonsense"]) == 2
     capsys.readouterr()
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    assert invoke(["--version"]) == 0
+    assert re.fullmatch(r"longarm, version \d+\.\d+\.\d+\n", capsys.readouterr().out)
