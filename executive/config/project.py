@@ -17,7 +17,7 @@ from executive.config.models import Name
 from executive.config.source import Mark, Source, read
 from executive.config.validate import Problems, Strict, parse
 from executive.core.errors import ConfigError
-from executive.core.registry import Project, current_project, project_file
+from executive.core.registry import PROJECT_FILE, Project, current_project, project_file
 
 Relative = Annotated[str, Field(min_length=1)]
 
@@ -53,28 +53,35 @@ def project_above(folder: Path) -> Project | None:
 
 def read_project(file: Path) -> Project:
     """A project file; ConfigError with every problem."""
-    source, problems = _source(file), Problems()
+    return project_in(project_source(file), file.name)
+
+
+def project_in(source: Source, name: str = PROJECT_FILE) -> Project:
+    """The same from a file of this name already read."""
+    problems = Problems()
     parsed = problems.attempt(parse, source, ProjectFile)
     data = source.data if isinstance(source.data, dict) else {}
     plugins = _files(source, problems, "plugins", data.get("plugins"), Path.is_file, "a Python file")
     paths = _files(source, problems, "paths", data.get("paths"), Path.is_dir, "a folder")
     problems.check()
     assert parsed is not None  # noqa: S101  (else a problem was found)
-    return Project(file.absolute(), plugins, paths, parsed.defaults.model_dump(exclude_none=True))
+    file = (source.folder() / name).absolute()
+    return Project(file, plugins, paths, parsed.defaults.model_dump(exclude_none=True))
 
 
 def with_defaults(source: Source, project: Project | None) -> Source:
     """A scenario with the project's defaults where it does not say; each keeps its place in that file."""
     if project is None or not project.defaults or not isinstance(source.data, dict):
         return source
-    defaults = _source(project.file)
+    defaults = project_source(project.file)
     for key in project.defaults:
         if key not in source.data:
             source = source.graft((key,), defaults.part(("defaults", key)))
     return source
 
 
-def _source(file: Path) -> Source:
+def project_source(file: Path) -> Source:
+    """A project file as it stands; an empty one is a project too."""
     working = Path.cwd()
     name = str(file.relative_to(working)) if file.is_relative_to(working) else str(file)
     if not any(line.partition("#")[0].strip() for line in file.read_text(errors="replace").splitlines()):

@@ -5,27 +5,19 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from executive.config.file_kinds import file_kind, file_kinds
+from executive.config.file_kinds import file_kind, file_kinds, kind_of
 from executive.config.find import shown
-from executive.config.project import project_for, read_project
+from executive.config.project import project_for, project_source
 from executive.config.source import read
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
 from executive.core.registry import PROJECT_FILE, in_project
-from executive.run.resolve import as_scenario, resolve
-from executive.tree.load import load_tree
-
-OWN = ("tree", "mission", "scenario")
 
 
 def check_file(path: Path) -> tuple[Problem, ...]:
     """Every problem of one file; none is an empty tuple."""
     try:
-        if path.name == PROJECT_FILE:
-            read_project(path)
-            return ()
         with in_project(project_for(path)):
             return _problems(path)
     except ConfigError as error:
@@ -33,30 +25,19 @@ def check_file(path: Path) -> tuple[Problem, ...]:
 
 
 def _problems(path: Path) -> tuple[Problem, ...]:
+    if path.name == PROJECT_FILE:  # told by its name, since all its keys may be left out
+        file_kind("project").check(project_source(path))
+        return ()
     source = read(path, shown(path))
     kind = kind_of(source.data)
     if kind is None:
         keys = [str(key) for key in source.data] if isinstance(source.data, dict) else []
-        known = (*file_kinds(), *OWN)
+        known = file_kinds()
         near = next((text for key in keys if (text := guess(key, known))), "")
         message = f"got a file of no known kind, expected one of the keys {listed(known)}{near}"
         return tuple(sorted({*source.problems, source.at(()).problem(message)}))
-    if kind == "tree":
-        load_tree(path)
-    elif kind in file_kinds():
-        file_kind(kind).check(source)
-    else:
-        resolve(as_scenario(source))
+    file_kind(kind).check(source)
     return ()
-
-
-def kind_of(data: Any) -> str | None:
-    """Tree, mission, scenario, or a kind that a plug-in reads, by the key that names the file."""
-    if not isinstance(data, dict):
-        return None
-    if "tree" in data and "root" in data:
-        return "tree"
-    return next((kind for kind in (*file_kinds(), "scenario", "mission", "tree") if kind in data), None)
 
 
 def as_text(problems: Sequence[Problem]) -> str:

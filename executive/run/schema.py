@@ -2,136 +2,18 @@
 
 from __future__ import annotations
 
-import copy
-from enum import Enum
 from typing import Any
 
 from executive.config.file_kinds import file_kind, file_kinds
-from executive.config.localizers import LOCALIZER_KIND
-from executive.config.models import DEFAULT_LOCALIZER, MissionFile, ScenarioFile
-from executive.config.project import ProjectFile
-from executive.core import registry
-from executive.core.values import VALUE_TYPE_KIND
-from executive.run.instruments import instruments_there_are
-from executive.tree.catalogue import node_types
-from executive.tree.file import TreeFile
-from executive.tree.node_type import NodeType
-from executive.tree.nodes.control import Children
-from executive.tree.ports import REQUIRED, Direction, PortSpec
-from executive.tree.spec import GUARDS
 
-_OWN = ("tree", "mission", "scenario", "project")
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def kinds() -> tuple[str, ...]:
     """Every kind of file that has a schema."""
-    return (*_OWN, *file_kinds())
+    return file_kinds()
 
 
 def schema(kind: str) -> dict[str, Any]:
     """The schema of one kind of file. PluginError when the plug-in that reads it cannot be loaded."""
-    own = {"tree": _tree, "mission": _mission, "scenario": _scenario, "project": _project}
-    made = own[kind]() if kind in own else file_kind(kind).schema()
-    return {"$schema": DIALECT, "title": f"Longarm {kind}"} | made
-
-
-def _project() -> dict[str, Any]:
-    return ProjectFile.model_json_schema(by_alias=True)
-
-
-def _mission() -> dict[str, Any]:
-    return MissionFile.model_json_schema(by_alias=True)
-
-
-def _scenario() -> dict[str, Any]:
-    made = ScenarioFile.model_json_schema(by_alias=True)
-    inline = copy.deepcopy(made["properties"]["mission"])
-    name = {"type": "string", "description": "a mission file: a path or a bare name"}
-    made["properties"]["mission"] = {"anyOf": [name, inline]}
-    made["properties"]["localizer"] = _localizer(made["$defs"])
-    for spec in instruments_there_are():
-        made["properties"] |= spec.schema(made["$defs"])
-    return made
-
-
-def _localizer(shared: dict[str, Any]) -> dict[str, Any]:
-    """A name, or a name with settings."""
-    specs = registry.every(LOCALIZER_KIND)
-    settings: dict[str, Any] = {}
-    for name, spec in specs.items():
-        own = spec.settings.model_json_schema(by_alias=True)
-        shared.update(own.pop("$defs", {}))
-        settings[name] = {"anyOf": [own, {"type": "null"}], "description": spec.doc}
-    one = {"type": "object", "properties": settings, "additionalProperties": False}
-    names = {"enum": list(specs)}
-    return {"anyOf": [names, one | {"minProperties": 1, "maxProperties": 1}], "default": DEFAULT_LOCALIZER}
-
-
-def _tree() -> dict[str, Any]:
-    made = TreeFile.model_json_schema(by_alias=True)
-    made["properties"]["root"] = {"$ref": "#/$defs/node"}
-    made["$defs"] = made.get("$defs", {}) | {"node": _node()}
-    declaration = made["$defs"]["PortDeclaration"]
-    declaration["properties"]["type"] = {"enum": list(registry.names(VALUE_TYPE_KIND))}
-    return made
-
-
-def _node() -> dict[str, Any]:
-    guards = {word: {"type": ["string", "boolean"], "description": "an expression"} for word in GUARDS}
-    own = {name: _parameters(kind) for name, kind in node_types().items()}
-    mapping = {
-        "type": "object",
-        "properties": own | guards | {"name": {"type": "string"}},
-        "description": "exactly one node type, or another tree by name",
-    }
-    return {"anyOf": [{"type": "string"}, mapping]}
-
-
-def _parameters(kind: NodeType) -> dict[str, Any]:
-    node: dict[str, Any] = {"$ref": "#/$defs/node"}
-    properties = {port.name: _port(port) for port in kind.ports}
-    if kind.children is Children.ONE:
-        properties["child"] = node
-    listing = _listing(kind, node)
-    if listing is not None:
-        properties["children"] = listing
-    required = [port.name for port in kind.ports if port.default is REQUIRED]
-    mapping: dict[str, Any] = {"type": ["object", "null"], "properties": properties, "description": kind.doc}
-    if kind.bare_child:
-        return {"anyOf": [mapping, node], "description": kind.doc}
-    mapping |= {"required": required, "additionalProperties": False}
-    return mapping if listing is None else {"anyOf": [mapping, listing], "description": kind.doc}
-
-
-def _listing(kind: NodeType, node: dict[str, Any]) -> dict[str, Any] | None:
-    """The list of children, for a node that has one."""
-    if kind.children is Children.MANY:
-        return {"type": "array", "items": node, "minItems": 1}
-    if kind.children is Children.TWO:
-        return {"type": "array", "items": node, "minItems": 2, "maxItems": 2}
-    return None
-
-
-def _port(port: PortSpec) -> dict[str, Any]:
-    """What may be given for a port: a reference always, a literal where its type has them."""
-    reference = {"type": "string", "pattern": r"^\{.*\}$"}
-    told = {"description": f"{port.help} ({port.type.name}, {port.direction.value})"}
-    if port.direction is not Direction.IN or not port.type.literal:
-        return reference | told
-    literal = _literal(port)
-    if port.fixed or literal == {"type": "string"}:
-        return literal | told
-    return {"anyOf": [literal, reference]} | told
-
-
-def _literal(port: PortSpec) -> dict[str, Any]:
-    """A literal of the port's type, of its choices where it has some."""
-    if port.choices:
-        return {"enum": list(port.choices)}
-    if port.type.unit is not None or port.type.python is str:
-        return {"type": "string"}
-    if issubclass(port.type.python, Enum):
-        return {"enum": [member.value for member in port.type.python]}
-    plain: dict[str, Any] = {"type": {float: "number", int: "integer", bool: "boolean"}[port.type.python]}
-    return plain if port.least is None else plain | {"minimum": port.least}
+    return {"$schema": DIALECT, "title": f"Longarm {kind}"} | file_kind(kind).schema()

@@ -39,6 +39,12 @@ def load_tree(
     return _Trees(types or node_types(), given).load(reference.absolute(), ())
 
 
+def tree_in(source: Source) -> TreeSpec:
+    """The same from a file already read."""
+    path = Path(source.at(()).file).absolute()
+    return _Trees(node_types(), {str(path): source}).load(path, ())
+
+
 def load_tree_text(text: str, name: str = "tree", types: Mapping[str, NodeType] | None = None) -> TreeSpec:
     """The same from text; other trees are found by bare name or from the working folder."""
     return _Trees(types or node_types()).read(read_text(text, name), ())

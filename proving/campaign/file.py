@@ -112,4 +112,4 @@ def campaign_schema() -> dict[str, Any]:
     return made
 
 
-KIND = FileKind("campaign", checked, campaign_schema)
+KIND = FileKind("campaign", checked, campaign_schema, holds=("scenario", "mission"))
