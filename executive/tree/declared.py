@@ -12,8 +12,9 @@ from executive.tree.ports import PortSpec, declared_ports
 class Declared:
     """Base of node classes. `name` is what tree files call the type: by default the class's in snake_case.
 
-    Files may still use its `former_names`. `symbol` stands before the name in drawings. `needs` names the devices without which no tree with this
-    node can run. `groot` is what BehaviorTree.CPP calls it, where it has such a node.
+    Files may still use one of its `former_names`. `symbol` stands before the name in drawings. `needs` names
+    the devices without which no tree with this node can run. `groot` is what BehaviorTree.CPP calls it, where
+    it has such a node.
     """
 
     name: ClassVar[str] = ""

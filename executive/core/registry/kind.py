@@ -33,8 +33,8 @@ class Kind(Generic[T]):
     them and the end of their entry point group, `longarm.<plural>`. `check` is the cheap part of the public
     checker: a sentence for each promise that an entry breaks; it runs when the entry is first used.
     `name_of` is the name an entry gives itself, which must be the one it is registered by (None: none).
-    `former_names_of` are others that it may still be registered by. `page` is what the catalogue says of an entry (None: its fields). What is not `scanned` for in modules
-    needs an entry point.
+    `former_names_of` gives others that it may still be registered by. `page` is what the catalogue says of an
+    entry (None: its fields). What is not `scanned` for in modules needs an entry point.
     """
 
     name: str
