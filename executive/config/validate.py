@@ -67,10 +67,19 @@ def parse(source: Source, model: type[M], at: Place = (), beside: Sequence[str] 
         parsed = model.model_validate_json(json.dumps(data), strict=True, context=folder)
     except ValidationError as error:
         for detail in error.errors(include_url=False, include_context=True):
-            problems.add(_problem(source, at, model, detail, beside))
+            if not _counts_bad_members(detail):
+                problems.add(_problem(source, at, model, detail, beside))
     problems.check()
     assert parsed is not None  # noqa: S101  (either parsed or a problem was found)
     return parsed
+
+
+def _counts_bad_members(detail: ErrorDetails) -> bool:
+    """Whether a list is too short only because members of it are wrong, which are problems of their own."""
+    given, context = detail["input"], detail.get("ctx") or {}
+    if detail["type"] != "too_short" or not isinstance(given, list):
+        return False
+    return len(given) >= int(context["min_length"])
 
 
 def guess(word: object, known: Iterable[str]) -> str:

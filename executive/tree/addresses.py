@@ -3,13 +3,15 @@
 localise                every node of that name
 trek_to/localise        those of a trek_to: steps of mere control flow may be left out
 back_off/localise#2     the second in back_off; `#1` is the first alone
+
+A type's former name stands for the present one.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
 
-from executive.tree.catalogue import control_types
+from executive.tree.catalogue import control_types, former_names
 
 
 @lru_cache(maxsize=1 << 16)  # asked every tick, of the same few
@@ -29,4 +31,6 @@ def matches(address: str, path: str) -> bool:
 
 def _is(said: str, step: str) -> bool:
     name, _, number = step.partition("#")
-    return said in (step, name, f"{name}#{number or 1}")
+    kind, mark, which = said.partition("#")
+    meant = former_names().get(kind, kind) + mark + which
+    return not {said, meant}.isdisjoint((step, name, f"{name}#{number or 1}"))

@@ -21,6 +21,16 @@ def _by_name(classes: tuple[NodeClass, ...]) -> Mapping[str, NodeType]:
     return {cls.name: NodeType.of(cls) for cls in classes}
 
 
+def former_names() -> Mapping[str, str]:
+    """The present name of every type that files may still call by a former one, by the former."""
+    return _by_former(tuple(node_types().values()))
+
+
+@lru_cache(maxsize=64)
+def _by_former(types: tuple[NodeType, ...]) -> Mapping[str, str]:
+    return {former: kind.name for kind in types for former in kind.former_names}
+
+
 def broken_nodes() -> tuple[Broken, ...]:
     """The types registered that cannot be used, with source and reason."""
     return tuple(dict.fromkeys((*registry.broken(CONTROL_KIND), *registry.broken(LEAF_KIND))))

@@ -12,11 +12,13 @@ from executive.tree.ports import PortSpec, declared_ports
 class Declared:
     """Base of node classes. `name` is what tree files call the type: by default the class's in snake_case.
 
-    `symbol` stands before the name in drawings. `needs` names the devices without which no tree with this
-    node can run. `groot` is what BehaviorTree.CPP calls it, where it has such a node.
+    Files may still use one of its `former_names`. `symbol` stands before the name in drawings. `needs` names
+    the devices without which no tree with this node can run. `groot` is what BehaviorTree.CPP calls it, where
+    it has such a node.
     """
 
     name: ClassVar[str] = ""
+    former_names: ClassVar[tuple[str, ...]] = ()
     symbol: ClassVar[str] = ""
     needs: ClassVar[tuple[str, ...]] = ()
     groot: ClassVar[Groot | None] = None

@@ -37,6 +37,11 @@ class NodeType:
         return cls(name, category, doc, ports, control=declared)
 
     @property
+    def former_names(self) -> tuple[str, ...]:
+        declared = self.leaf or self.control
+        return declared.former_names if declared else ()
+
+    @property
     def children(self) -> Children:
         return self.control.children if self.control else Children.NONE
 

@@ -9,6 +9,7 @@ from typing import Any
 from executive.config.source import Mark, Place, Source
 from executive.config.validate import Problems, guess, listed, shown
 from executive.core.errors import ConfigError
+from executive.tree.catalogue import former_names
 from executive.tree.expressions.guards import Guard, parse_guard
 from executive.tree.expressions.typed import GuardError
 from executive.tree.flow import Flow
@@ -64,9 +65,9 @@ class TreeReader:
         guards = {
             key: guard for key in GUARDS if key in beside if (guard := self._guard((*outer, key), local))
         }
-        name = self._name(outer, word, beside, local)
-        mark = self.source.key_at(place)
-        kind, tree = self.types.get(word), None
+        mark, tree = self.source.key_at(place), None
+        kind = self.types.get(word) or self.types.get(former_names().get(word, ""))
+        name = self._name(outer, kind.name if kind else word, beside, local)
         given = local.attempt(given_parameters, self.source, place, word, kind)
         if kind is None:
             tree = local.attempt(self.find_tree, word, mark)

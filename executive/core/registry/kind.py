@@ -20,6 +20,11 @@ def nothing_broken(entry: Any) -> Iterable[str]:
     return ()
 
 
+def nothing_former(entry: Any) -> tuple[str, ...]:
+    """The `former_names_of` a kind whose names never changed."""
+    return ()
+
+
 @dataclass(frozen=True)
 class Kind(Generic[T]):
     """A kind of thing that can be added, declared where its type lives.
@@ -28,8 +33,8 @@ class Kind(Generic[T]):
     them and the end of their entry point group, `longarm.<plural>`. `check` is the cheap part of the public
     checker: a sentence for each promise that an entry breaks; it runs when the entry is first used.
     `name_of` is the name an entry gives itself, which must be the one it is registered by (None: none).
-    `page` is what the catalogue says of an entry (None: its fields). What is not `scanned` for in modules
-    needs an entry point.
+    `former_names_of` gives others that it may still be registered by. `page` is what the catalogue says of an
+    entry (None: its fields). What is not `scanned` for in modules needs an entry point.
     """
 
     name: str
@@ -39,6 +44,7 @@ class Kind(Generic[T]):
     classes: bool = False
     check: Callable[[T], Iterable[str]] = nothing_broken
     name_of: Callable[[T], str | None] = own_name
+    former_names_of: Callable[[T], tuple[str, ...]] = nothing_former
     page: Callable[[T], Mapping[str, Any]] | None = None
     scanned: bool = True
 
@@ -59,7 +65,11 @@ class Kind(Generic[T]):
             wanted = f"a subclass of {self.type.__name__}" if self.classes else _one(self.type)
             return (f"got {_shown(entry)}, expected {wanted}",)
         own = self.name_of(entry)
-        other = () if own in (None, name) else (f"its own name is {own!r}",)
+        other = (
+            ()
+            if own in (None, name) or name in self.former_names_of(entry)
+            else (f"its own name is {own!r}",)
+        )
         return (*other, *self.check(entry))
 
 

@@ -50,6 +50,10 @@ def _name(node: type[Declared]) -> str:
     return node.name
 
 
+def _former_names(node: type[Declared]) -> tuple[str, ...]:
+    return node.former_names
+
+
 LEAF_KIND: Kind[type[Leaf]] = Kind(
     "leaf",
     "leaves",
@@ -58,6 +62,7 @@ LEAF_KIND: Kind[type[Leaf]] = Kind(
     classes=True,
     check=broken_promises,
     name_of=_name,
+    former_names_of=_former_names,
 )
 CONTROL_KIND: Kind[type[ControlNode]] = Kind(
     "control node",
@@ -67,4 +72,5 @@ CONTROL_KIND: Kind[type[ControlNode]] = Kind(
     classes=True,
     check=broken_promises_of_control,
     name_of=_name,
+    former_names_of=_former_names,
 )

@@ -107,8 +107,10 @@ class Compensate(Leaf):
         return Outcome(Reason.DONE, f"{self.of} ratio {ratio:.2f} adopted")
 
 
-class DoubtPrediction(Leaf):
-    """Believe the prediction less, so that the next fix may lie elsewhere."""
+class InflatePrediction(Leaf):
+    """Inflate the covariance of the prediction, so that the next fix may lie elsewhere."""
+
+    former_names = ("doubt_prediction",)
 
     position = In[float](LENGTH, "standard deviation added to the place", default=0.15)
     heading = In[float](ANGLE, "standard deviation added to the heading", default=math.radians(20.0))
@@ -116,6 +118,10 @@ class DoubtPrediction(Leaf):
     def step(self) -> Outcome[object]:
         self.services.classification.tracker.inflate(self.position, self.position, self.heading)
         return Outcome(Reason.DONE)
+
+
+DoubtPrediction = InflatePrediction
+"""As the entry point names it."""
 
 
 class DeadReckon(Leaf):

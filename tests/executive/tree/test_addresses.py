@@ -23,6 +23,8 @@ BACK_OFF = f"{SEGMENT}/back_off/sequence"
         ("back_off/localise", f"{BACK_OFF}/localise#2"),
         ("back_off/localise#2", f"{BACK_OFF}/localise#2"),
         ("back_off/localise#1", f"{BACK_OFF}/localise"),
+        ("back_off/doubt_prediction", f"{BACK_OFF}/inflate_prediction"),
+        ("doubt_prediction#2", f"{BACK_OFF}/inflate_prediction#2"),
         ("mission/for_each", "navigate/selector/mission/for_each"),
     ],
 )

@@ -180,3 +180,13 @@ def test_any_root_is_a_tree_or_a_config_error(root):
         assert all(p.line >= 1 and p.column >= 1 for p in error.problems)
     else:
         assert list(walk(spec))
+
+
+def test_a_former_name_of_a_leaf_still_works():
+    tree = load_tree_text(in_tree("{doubt_prediction: {position: 20 cm}}"))
+    assert (tree.root.name, tree.root.type) == ("inflate_prediction", "inflate_prediction")
+
+
+def test_a_former_name_still_has_its_ports_checked():
+    with pytest.raises(ConfigError, match=r'unknown port "positoin".*did you mean "position"'):
+        load_tree_text(in_tree("{doubt_prediction: {positoin: 20 cm}}"))

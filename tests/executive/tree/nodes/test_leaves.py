@@ -212,7 +212,7 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("compensate", Reason.DONE, turned, {"of": "turning"}),
     ("compensate", Reason.GUARD, nothing, {"of": "advance"}),
     ("dead_reckon", Reason.DONE, nothing, {}),
-    ("doubt_prediction", Reason.DONE, nothing, {}),
+    ("inflate_prediction", Reason.DONE, nothing, {}),
     ("drive_leg", Reason.OFF_HEADING, nothing, {"target": ASIDE}),
     ("drive_leg", Reason.OVERSHOOT, nothing, {"target": BEHIND}),
     ("drive_leg", Reason.OFF_TRACK, drifting, {"target": Point(2.1, 0.5)}),
