@@ -7,6 +7,7 @@ from yard_robot.faults import BATTERY_DRAIN, CAMERA_DARK, COVERED, SLIPPING
 from yard_robot.localizer import YARD_MARKERS
 from yard_robot.nodes import CheckBattery, RechargeWait
 from yard_robot.strategies import ADOPT_SLIP, BACK_UP, RECHARGE, SHOW_ANOTHER_FACE, WAIT_AND_LOOK
+from yard_robot.while_charged import WhileCharged
 
 __all__ = [
     "ADOPT_SLIP",
@@ -30,4 +31,5 @@ __all__ = [
     "YARD_MARKERS",
     "CheckBattery",
     "RechargeWait",
+    "WhileCharged",
 ]
