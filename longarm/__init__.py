@@ -67,10 +67,13 @@ if TYPE_CHECKING:
     from executive.testing import Ended as Ended
     from executive.testing import check_backend as check_backend
     from executive.testing import check_channel as check_channel
+    from executive.testing import check_device as check_device
     from executive.testing import check_fault as check_fault
     from executive.testing import check_hypothesis as check_hypothesis
     from executive.testing import check_leaf as check_leaf
     from executive.testing import check_localizer as check_localizer
+    from executive.testing import check_node as check_node
+    from executive.testing import check_policy as check_policy
     from executive.testing import check_strategy as check_strategy
 
 __all__ = [
@@ -165,10 +168,13 @@ __all__ = [
     "WaypointEvent",
     "check_backend",
     "check_channel",
+    "check_device",
     "check_fault",
     "check_hypothesis",
     "check_leaf",
     "check_localizer",
+    "check_node",
+    "check_policy",
     "check_strategy",
 ]
 

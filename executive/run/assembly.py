@@ -36,7 +36,7 @@ from executive.run.runner import Run
 from executive.tree.build import build
 from executive.tree.needs import unfit
 from executive.tree.nodes.services import Services
-from executive.tree.strategies import strategy_trees
+from executive.tree.strategies import broken_strategies, strategy_trees
 
 TICK_S = 1.0
 
@@ -57,6 +57,9 @@ def write_start(recorder: Recorder, scenario: ResolvedScenario) -> None:
     start = events.Start(scenario.name, scenario.dump(), scenario.seed, TICK_S, scenario.tier, versions())
     recorder.write(start, 0.0)
     recorder.write(events.RouteEvent(scenario.mission.route()), 0.0)
+    for broken in broken_strategies():
+        without = f"the run does without {broken}"
+        recorder.write(events.LogEvent(events.Level.WARNING, "pool", without), 0.0)
     recorder.flush()
 
 

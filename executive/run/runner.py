@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -11,7 +12,7 @@ from py_trees.common import Status
 from executive.core.clock import Stopwatch
 from executive.core.devices import DRIVE
 from executive.core.errors import NodeRaised
-from executive.core.ports import Backend
+from executive.core.ports import Backend, Devices
 from executive.core.types import Outcome, Reason
 from executive.record import events
 from executive.record.journal import RunJournal
@@ -124,6 +125,7 @@ def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
         changes.write,
         run.trace.terminate_entered,
         changes.write,
+        *_to_rest(run.services.devices),
         run.backend.safe_stop,
         lambda: _see_it_rest(run),
         judge,
@@ -139,6 +141,13 @@ def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
         except Exception as defect:
             end = ended_by(end.defect or defect)
     return end
+
+
+def _to_rest(devices: Devices) -> Iterator[Callable[[], object]]:
+    """A step for each device that can be anything but at rest."""
+    for fitted in devices:
+        if fitted.spec.rest is not None:
+            yield partial(fitted.spec.rest, fitted.device)
 
 
 def _see_it_rest(run: Run) -> None:

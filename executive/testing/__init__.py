@@ -2,6 +2,14 @@
 
 from executive.testing.bench import Bench, Ended
 from executive.testing.check_backend import BackendBreach, check_backend
+from executive.testing.check_declared import (
+    DeviceBreach,
+    NodeBreach,
+    PolicyBreach,
+    check_device,
+    check_node,
+    check_policy,
+)
 from executive.testing.check_diagnosis import check_channel, check_hypothesis
 from executive.testing.check_fault import FaultBreach, check_fault
 from executive.testing.check_leaf import LeafBreach, check_leaf
@@ -14,20 +22,26 @@ __all__ = [
     "OVERHEAD",
     "BackendBreach",
     "Bench",
+    "DeviceBreach",
     "Ended",
     "FakeBackend",
     "FakeWorld",
     "FaultBreach",
     "LeafBreach",
     "LocalizerBreach",
+    "NodeBreach",
     "OverheadLocalizer",
+    "PolicyBreach",
     "StrategyBreach",
     "check_backend",
     "check_channel",
+    "check_device",
     "check_fault",
     "check_hypothesis",
     "check_leaf",
     "check_localizer",
+    "check_node",
+    "check_policy",
     "check_strategy",
     "fake_with",
 ]

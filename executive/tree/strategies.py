@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from executive.config.registered import registered
+from executive.config.source import Mark
 from executive.core import registry
 from executive.core.errors import ConfigError
 from executive.core.registry import Broken
@@ -27,6 +29,15 @@ def broken_strategies() -> tuple[Broken, ...]:
         for s, problems in bad
     )
     return (*registry.broken(STRATEGY_KIND), *of_trees)
+
+
+def usable_strategy(name: str, mark: Mark) -> Strategy:
+    """The strategy of this name; ConfigError at `mark` where it is unknown, broken, or its tree is bad."""
+    strategy = registered(STRATEGY_KIND, name, mark)
+    if problems := _problems(strategy):
+        source = registry.source_of(STRATEGY_KIND, name)
+        raise ConfigError([mark.problem(str(Broken(STRATEGY_KIND.name, name, source, problems)))])
+    return strategy
 
 
 def strategy_trees(strategies: Sequence[Strategy], instead: Instead = AS_IT_IS) -> dict[str, TreeSpec]:

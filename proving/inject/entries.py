@@ -26,11 +26,11 @@ from executive.core.units import (
     quantity,
     written,
 )
-from executive.pool.kind import STRATEGY_KIND
 from executive.record import live_types
 from executive.run import FAULT_KIND, FaultSpec, Setting
 from executive.tree.expressions.guards import parse_guard
 from executive.tree.expressions.typed import GuardError
+from executive.tree.strategies import usable_strategy
 from proving.inject import profiles as profiles
 from proving.inject.profiles import Profile
 from proving.inject.triggers import Trigger
@@ -165,7 +165,7 @@ def _start(source: Source, place: Place, entry: dict[str, Any], setting: Setting
         message = f"got way-point {start.waypoint}, expected 0 to {setting.waypoints - 1}"
         raise ConfigError([source.at((*place, "from", "waypoint")).problem(message)])
     if start.strategy is not None:
-        registered(STRATEGY_KIND, start.strategy, source.at((*place, "from", "strategy")))
+        usable_strategy(start.strategy, source.at((*place, "from", "strategy")))
     return start
 
 

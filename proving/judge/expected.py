@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from executive.config.registered import registered
 from executive.config.source import Place, Source
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
 from executive.isc import hypothesis_names
-from executive.pool.kind import STRATEGY_KIND
 from executive.run import Named
 from executive.tree.expressions.typed import GuardError
+from executive.tree.strategies import usable_strategy
 from proving.judge.expect import LISTS_OF_STEPS, Expect
 from proving.judge.temporal import (
     Always,
@@ -94,7 +93,7 @@ def _texts(source: Source, key: str, field: str | None = None) -> Iterator[Named
 def _no_strategies(source: Source, named: Iterable[Named]) -> Iterator[Problem]:
     for place, name in named:
         try:
-            registered(STRATEGY_KIND, name, source.at(place))
+            usable_strategy(name, source.at(place))
         except ConfigError as error:
             yield from error.problems
 

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from executive.cli import invoke
+from executive.config.file_kinds import kind_of
 from executive.core import registry
 from executive.record import History
 from executive.record.events import NodeChange
@@ -93,6 +94,27 @@ def test_its_signal_triggers_and_is_expected(outside, capsys):
     scenario.write_text(text.replace("heat > 30", "heet > 30"))
     assert invoke(["check", "outside.yaml"]) == 1
     assert 'did you mean "heat"?' in capsys.readouterr().out
+
+
+def test_the_executives_own_files_are_kinds_among_the_strangers(outside, capsys):
+    listed = json.loads(said(capsys, "files", "--json"))
+    assert {"tree", "mission", "scenario", "project", "campaign", "coverage", "recipe"} == set(listed)
+    for kind in listed:
+        assert "$schema" in json.loads(said(capsys, "schema", kind))
+
+
+@pytest.mark.parametrize(
+    ("keys", "kind"),
+    [
+        (("mission", "tree", "waypoints"), "mission"),
+        (("scenario", "project", "mission"), "scenario"),
+        (("campaign", "scenario"), "campaign"),
+        (("tree", "root", "mission"), "tree"),
+        (("plugins",), None),
+    ],
+)
+def test_a_file_with_the_keys_of_several_kinds_is_the_one_that_holds(keys, kind):
+    assert kind_of(dict.fromkeys(keys, "x")) == kind
 
 
 def test_it_is_drawn_and_in_the_schemas(outside, capsys):

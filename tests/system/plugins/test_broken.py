@@ -5,6 +5,8 @@ import json
 import pytest
 
 from executive.cli import invoke
+from executive.record import History
+from executive.record.events import Command, LogEvent
 from tests.system.plugins.conftest import ADDED, HERE, install
 
 BROKEN = {
@@ -204,6 +206,46 @@ def test_the_pool_does_without_a_strategy_whose_tree_is_bad(plain, capsys):
     assert told.startswith("longarm: the run does without strategy sit_still: sit_still.yaml:2:25: got ")
     assert "(longarm.yaml: stranger.py)\n" in told
     assert invoke(["explain", "out"]) == 0
+    logged = History.of(folder / "out" / "record.mcap").all(LogEvent)
+    assert any("does without strategy sit_still" in at.event.message for at in logged)
+    (folder / "plain.yaml").write_text(PLAIN + "expect: {strategies_not_tried: [sit_still]}\n")
+    capsys.readouterr()
+    assert invoke(["check", "plain.yaml"]) == 1
+    assert "plain.yaml:7:33: strategy sit_still: sit_still.yaml:2:25: got " in capsys.readouterr().out
+
+
+LAMP = """
+from dataclasses import replace
+
+from executive.testing import BACKEND
+from longarm import Devices, DeviceSpec, Verb
+
+
+class _Lamp:
+    def off(self):
+        Path("off.txt").write_text("off")
+
+
+LAMP = DeviceSpec("lamp", "A lamp.", _Lamp, verbs=(Verb("off"),), rest=lambda lamp: lamp.off())
+
+
+def _create(request):
+    backend = BACKEND.create(request)
+    backend.devices = Devices(*backend.devices, LAMP.fit(_Lamp()))
+    return backend
+
+
+LIT = replace(BACKEND, name="lit", devices=(*BACKEND.devices, "lamp"), create=_create)
+"""
+
+
+def test_a_device_of_a_plug_in_is_brought_to_rest_in_the_end(plain):
+    folder = plain(LAMP, {}, "project")
+    (folder / "plain.yaml").write_text(PLAIN.replace("backend: fake", "backend: lit"))
+    assert invoke(["run", "plain.yaml", "--out", "out", "--quiet"]) == 0
+    assert (folder / "off.txt").read_text() == "off"
+    commands = History.of(folder / "out" / "record.mcap").all(Command)
+    assert [at.event.verb for at in commands if at.event.device == "lamp"] == ["off"]
 
 
 def test_a_leaf_that_raises_in_a_run_is_a_defect(plain, capsys):
