@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,6 +102,21 @@ def area_of(route: tuple[Segment, ...], margin_m: float) -> Area:
     low = (min(p.x_m - r for p, r in ends), min(p.y_m - r for p, r in ends))
     high = (max(p.x_m + r for p, r in ends), max(p.y_m + r for p, r in ends))
     return Area(low, high)
+
+
+def points_outside(
+    low: Vec2, high: Vec2, route: tuple[Segment, ...], margin_m: float
+) -> Iterator[tuple[int, str]]:
+    """The way-points that ground from `low` to `high` does not carry, each with the reason."""
+    points = (route[0].start, *(segment.end for segment in route))
+    for index, point in enumerate(points):
+        reach_m = max(s.off_track_m for s in route[max(index - 1, 0) : index + 1]) + margin_m
+        for axis, at, least, most in (("x", point.x_m, low[0], high[0]), ("y", point.y_m, low[1], high[1])):
+            if least <= at - reach_m and at + reach_m <= most:
+                continue
+            near = f", with a margin of {reach_m:g} m," if least <= at <= most else ""
+            window = f"the terrain window ({least:.4g} … {most:.4g} m)"
+            yield index, f"{axis} {at:.4g} m{near} is outside {window}"
 
 
 def require_cover(low: Vec2, high: Vec2, area: Area) -> None:

@@ -12,7 +12,7 @@ from executive.core.types import Segment, Vec2
 from sim_pybullet.config import ProceduralConfig, TerrainConfig, WorldConfig
 from sim_pybullet.elevation_model import Window, default_lander_m, read_model, window_on
 from sim_pybullet.site import CELL_M, ROUTE_MARGIN_M
-from sim_pybullet.terrain import TerrainError, area_of, require_cover
+from sim_pybullet.terrain import TerrainError, points_outside
 
 TERRAIN: Place = ("terrain",)
 
@@ -30,14 +30,13 @@ def world_problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldP
             w = terrain.window
             window = window_on(model, Window(w.x, w.y, w.width) if w is not None else None)
         else:
-            place = (*TERRAIN, "procedural", "width")
             width = (terrain.procedural or ProceduralConfig()).width
             window = Window(0.0, 0.0, math.ceil(width / CELL_M) * CELL_M)
         low, high = _extent(terrain, window)
-        require_cover(low, high, area_of(route, ROUTE_MARGIN_M))
     except TerrainError as error:
         return (WorldProblem(place, str(error)),)
-    return ()
+    outside = points_outside(low, high, route, ROUTE_MARGIN_M)
+    return tuple(WorldProblem((), message, waypoint) for waypoint, message in outside)
 
 
 def _extent(terrain: TerrainConfig, window: Window) -> tuple[Vec2, Vec2]:

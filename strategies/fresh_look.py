@@ -1,4 +1,4 @@
-"""Fix and prediction contradict each other: doubt the prediction, and measure again."""
+"""Fix and prediction contradict each other: inflate the prediction, and measure again."""
 
 from pathlib import Path
 

@@ -35,10 +35,14 @@ class BackendRequest:
 
 @dataclass(frozen=True)
 class WorldProblem:
-    """Why a well-formed world cannot be made; `place` are the keys, seen from `world`, that say so."""
+    """Why a well-formed world cannot be made; `place` are the keys, seen from `world`, that say so.
+
+    With `waypoint` the problem is reported at that way-point of the mission instead, counted from 0.
+    """
 
     place: Place
     message: str
+    waypoint: int | None = None
 
 
 def no_problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldProblem, ...]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from executive.config.backends import BACKEND_KIND, BackendSpec
+from executive.config.backends import BACKEND_KIND, BackendSpec, WorldProblem
 from executive.config.distributions import drawn
 from executive.config.find import find, portable, shown
 from executive.config.localizers import ChosenLocalizer, localizer_from
@@ -203,7 +203,13 @@ def _world_problems(
     source: Source, backend: BackendSpec, world: BaseModel, mission: MissionFile
 ) -> list[Problem]:
     found = backend.problems(world, mission.route())
-    return [source.at(("world", *problem.place)).problem(problem.message) for problem in found]
+    return [source.at(_place_of(problem)).problem(problem.message) for problem in found]
+
+
+def _place_of(problem: WorldProblem) -> Place:
+    if problem.waypoint is not None:
+        return ("mission", "waypoints", problem.waypoint)
+    return ("world", *problem.place)
 
 
 def _tree_path(source: Source) -> Path | None:

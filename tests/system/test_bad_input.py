@@ -103,7 +103,7 @@ FILES = [
     ("absent elevation model", "scenarios/short", SCENARIO + "world: {terrain: {dem: none.tif}}\n",
      "scenarios/short.yaml:4:24: no such elevation model: "),
     ("terrain too small", "scenarios/short", SCENARIO + "world: {terrain: {procedural: {width: 4 m}}}\n",
-     "scenarios/short.yaml:4:39: the terrain window does not cover the route"),
+     "missions/short.yaml:5:5: x 2.6 m is outside the terrain window (-2 … 2.02 m)"),
 ]  # fmt: skip
 
 
@@ -205,7 +205,6 @@ def test_what_is_no_scenario_file_is_refused(
         ("words.npy", np.array([["a", "b"]] * 2), "not a readable array"),
         ("flat.npy", np.zeros(9), "got an array of shape (9,)"),
         ("holes.npy", np.full((9, 9), np.nan), "81 cells hold no height"),
-        ("small.npy", np.zeros((9, 9)), "the terrain window does not cover the route"),
     ],
 )
 def test_an_elevation_model_that_cannot_serve_is_refused(
@@ -222,6 +221,25 @@ def test_an_elevation_model_that_cannot_serve_is_refused(
     (line,) = refused(capsys, "scenarios/short.yaml")
     assert complaint in line
     assert line.startswith("scenarios/short.yaml:")
+
+
+def test_a_way_point_beyond_the_elevation_model_is_named(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    np.save(folder / "scenarios" / "small.npy", np.zeros((60, 60)))
+    terrain = "{dem: small.npy, cell: 100 mm, lander: {x: 1 m, y: 3 m}}"
+    (folder / "missions" / "short.yaml").write_text(MISSION.replace("2.6", "6"))
+    (folder / "scenarios" / "short.yaml").write_text(SCENARIO + f"world:\n  terrain: {terrain}\n")
+    (line,) = refused(capsys, "scenarios/short.yaml")
+    assert line.startswith("missions/short.yaml:5:5: x 6 m is outside the terrain window (-1 … ")
+
+
+def test_a_missing_unit_is_the_only_problem_reported(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "missions" / "short.yaml").write_text(MISSION.replace("2.6 m", "2.6"))
+    (line,) = refused(capsys, "scenarios/short.yaml")
+    assert line.startswith("missions/short.yaml:5:9: got 2.6 without a unit")
 
 
 def test_a_window_outside_the_elevation_model_is_refused(
