@@ -9,14 +9,13 @@ from __future__ import annotations
 import argparse
 import json
 import shutil
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
+from executive.run import app
+
 HERE = Path(__file__).parent
-HOME = HERE.parent / "yard_robot"
-SCENARIOS = HOME / "scenarios"
+SCENARIOS = HERE.parent / "yard_robot" / "scenarios"
 
 
 def main() -> None:
@@ -29,8 +28,8 @@ def main() -> None:
     names = given.scenarios or sorted(path.stem for path in SCENARIOS.glob("*.yaml"))
     rows = _rows(given.rows)
     with given.rows.open("a") as file:
-        for name in names:
-            for seed in range(given.seeds):
+        for seed in range(given.seeds):  # the outer loop, so that what is cut short shows every scenario
+            for name in names:
                 if (name, seed) not in rows:
                     rows[name, seed] = _run(name, seed)
                     print(json.dumps(rows[name, seed]), file=file, flush=True)
@@ -46,14 +45,10 @@ def _rows(path: Path) -> dict[tuple[str, int], dict[str, object]]:
 def _run(name: str, seed: int) -> dict[str, object]:
     """One run, as a row."""
     folder = Path(tempfile.mkdtemp(prefix="yard-"))
-    command = ["longarm", "run", str(SCENARIOS / f"{name}.yaml"), "--seed", str(seed), "--json"]
-    ended = subprocess.run(
-        [*command, "--out", str(folder / "run")], cwd=HOME, capture_output=True, text=True, check=False
-    )
-    shutil.rmtree(folder, ignore_errors=True)
-    if not ended.stdout.startswith("{"):
-        sys.exit(f"{name}, seed {seed}: {ended.stderr}")
-    result = json.loads(ended.stdout)
+    options = app.RunOptions(seed=seed, out=folder / "run", bar=False, report=False)
+    app.run(SCENARIOS / f"{name}.yaml", options)
+    result = json.loads((folder / "run" / "result.json").read_text())
+    shutil.rmtree(folder)
     return {
         "scenario": name,
         "seed": seed,
