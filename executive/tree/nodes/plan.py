@@ -120,10 +120,6 @@ class InflatePrediction(Leaf):
         return Outcome(Reason.DONE)
 
 
-DoubtPrediction = InflatePrediction
-"""As the entry point names it."""
-
-
 class DeadReckon(Leaf):
     """Take the predicted pose for the pose."""
 
