@@ -55,6 +55,10 @@ def test_mission_runs_on_the_installed_wheel_in_an_empty_folder(wheel, tmp_path)
     subprocess.run(
         [*install, "--target", str(site), str(wheel), str(CHECKOUT / "examples/yard_robot")], check=True
     )
+    folders = ", ".join(str(site / "yard_robot" / name) for name in ("trees", "missions"))
+    (empty / "longarm.yaml").write_text(
+        f"paths: [{folders}]\ndefaults: {{backend: yard, localizer: yard_markers}}\n"
+    )
     program = "import executive, sys; print(executive.__file__); from executive.cli import main; main()"
     scenario = site / "yard_robot" / "scenarios" / "yard_round.yaml"
     ended = subprocess.run(
