@@ -27,6 +27,7 @@ from executive.record.events import (
     AnnotationsEvent,
     Box,
     Command,
+    DeviceReading,
     FaultArmedEvent,
     FaultEvent,
     HypothesesEvent,
@@ -56,6 +57,7 @@ POSE = PoseEstimate(
     12.0, (1.0, 2.0, 0.1), (0.0, 0.0, 0.6, 0.8), np.arange(36.0).reshape(6, 6) / 7, "markers", markers=3
 ).on(SEGMENT)
 EVENTS = (
+    DeviceReading("battery", {"charge": 0.75, "power": -12.5}),
     Start("trip", "scenario: trip\n", 7, 1.0, "geometric", {"numpy": "2", "longarm": "1"}),
     NodeChange("a/b", "failure", "not_seen", "2 of 4"),
     Command("tracks", "drive", {"left_m": 0.1, "right_m": -0.1 / 3}),
