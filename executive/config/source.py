@@ -116,7 +116,7 @@ class Source:
         return Source(
             {key: value for key, value in data.items() if key in keys},
             {p: mark for p, mark in self.values.items() if not p or p[0] in keys},
-            {p: mark for p, mark in self.keys.items() if p[0] in keys},
+            {p: mark for p, mark in self.keys.items() if p and p[0] in keys},
             {p: folder for p, folder in self.folders.items() if not p or p[0] in keys},
         )
 
