@@ -59,15 +59,14 @@ $(STAMP): requirements.lock pyproject.toml setup.py
 	@$(PYTHON) -c '$(FITS)' 2>/dev/null || { \
 	  echo "longarm needs Python 3.11 to 3.13 with its venv module; $(PYTHON) is not that:"; \
 	  $(PYTHON) --version; $(PYTHON) -c 'import venv, ensurepip'; exit 2; }
-	$(SAY) "first use, with $$($(PYTHON) --version) ($(PYTHON)); about 3 minutes until it is ready"
+	$(SAY) "first use, with $$($(PYTHON) --version) ($(PYTHON)); some 3 minutes until it is ready"
 	$(SAY) "1 of 3: making the environment $(VENV)"
 	@$(PYTHON) -m venv --clear $(VENV)
 	$(SAY) "2 of 3: installing $$(grep -c == requirements.lock) packages, checked by hash: about 2 minutes"
 	@$(PIP) install --require-hashes --requirement requirements.lock
 	@rm -rf build *.egg-info
 	@$(PIP) install --no-deps --no-build-isolation --editable .
-	@test ! -e perception/prepare.py || { \
-	  echo "longarm: 3 of 3: compiling the inner loops of perception, once: about 40 seconds"; \
-	  $(BIN)/python -m perception.prepare; }
+	$(SAY) "3 of 3: compiling the inner loops of perception, once: about a minute"
+	@$(BIN)/python -m perception.localizer.machine_code
 	$(SAY) "ready: $(BIN)/longarm, or 'longarm' after 'source $(BIN)/activate'"
 	@touch $@
