@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
@@ -16,7 +17,9 @@ class Figure:
 
 
 def duration(seconds: float) -> str:
-    """Mission time for people: 45 s, 12 min 05 s, 3 h 07 min."""
+    """Mission time for people: 45 s, 12 min 05 s, 3 h 07 min; a dash where it is no finite number."""
+    if not math.isfinite(seconds):
+        return "–"
     whole = round(seconds)
     if whole < 60:
         parts = [f"{whole} s"]

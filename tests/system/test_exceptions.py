@@ -137,11 +137,10 @@ def test_a_device_that_raises_leaves_the_rover_safe(
     assert [promise for promise, kept in safe(ended).items() if not kept] == []
 
 
-@pytest.mark.parametrize("method", ["locate", "views"])
-def test_a_localizer_that_raises_is_told_with_the_leaf_that_asked(tmp_path: Path, method: str) -> None:
-    ended = run(Setting(), tmp_path, alter=lambda made: break_in(made.services.localizer, method))
+def test_a_localizer_that_raises_is_told_with_the_leaf_that_asked(tmp_path: Path) -> None:
+    ended = run(Setting(), tmp_path, alter=lambda made: break_in(made.services.localizer, "locate"))
     assert ended.end.reason == (
-        f"navigate/selector/mission/find_rover/recover/localise: Broken: {method} is broken"
+        "navigate/selector/mission/find_rover/recover/localise: Broken: locate is broken"
     )
     assert all(safe(ended).values())
 
@@ -171,8 +170,9 @@ def test_a_strategy_whose_needs_raise_is_named(tmp_path: Path) -> None:
 def test_a_journal_that_raises_leaves_the_rover_safe(tmp_path: Path, method: str) -> None:
     def alter(made: Run) -> None:
         break_in(made.journal, method)
-        if method == "strategy":  # the pool was given the method before
-            made.services.pool._note = made.journal.strategy
+        # these were given the method before it broke
+        made.services.pool._note = made.journal.strategy
+        made.services.classification._announce = made.journal.assessment
 
     ended = run(Setting(blind_every=3), tmp_path, alter=alter)
     kept = safe(ended)
@@ -208,19 +208,26 @@ def test_an_interrupt_holds_the_rover_and_closes_the_record(tmp_path: Path, at_t
 
 
 def test_an_interrupt_while_coming_to_rest_does_not_keep_it_from_resting(tmp_path: Path) -> None:
+    stops = []
+
     def alter(made: Run) -> None:
-        advance = made.backend.advance
+        advance, stop = made.backend.advance, made.backend.safe_stop
 
         def interrupted() -> None:
             if made.backend.devices[DRIVE].read().moving:
                 raise KeyboardInterrupt
             advance()
 
-        made.backend.advance = interrupted
+        def noted_stop() -> None:
+            stops.append(made.backend.devices[DRIVE].read().moving)
+            stop()
+
+        made.backend.advance, made.backend.safe_stop = interrupted, noted_stop
         break_in(made.trace, "terminate_entered", 0, KeyboardInterrupt())
 
     ended = run(Setting(), tmp_path, alter=alter)
-    assert ended.rested_by_itself  # nobody halted the leaves; the drive was brought to rest as its spec says
+    # nobody halted the leaves: the drive was brought to rest as its spec says, and the backend is stopped too
+    assert stops == [False]
     assert not ended.backend.devices[DRIVE].read().moving
     assert is_complete(ended.record)
 

@@ -73,13 +73,13 @@ def _table(rows: dict[tuple[str, int], dict[str, object]]) -> None:
         reached = sum(row["outcome"] == "reached" for row in mine)
         tried: dict[str, int] = {}
         for row in mine:
-            for strategy in row["strategies"]:  # type: ignore[attr-defined]
+            for strategy in row["strategies"]:  # type: ignore[attr-defined]  # rows are JSON: a list of names
                 tried[strategy] = tried.get(strategy, 0) + 1
-        nees = sum(float(row["nees"] or 0.0) for row in mine) / len(mine)  # type: ignore[arg-type]
+        nees = sum(float(row["nees"] or 0.0) for row in mine) / len(mine)  # type: ignore[arg-type]  # rows are JSON: a number or null
         print(
             f"{name:17} {len(mine):5} {reached:7} {sum(bool(row['unsafe']) for row in mine):6} "
             f"{sum(bool(row['alarms']) for row in mine):12} "
-            f"{sum(float(row['mission_s']) for row in mine) / len(mine):7.0f}s {nees:5.1f}  "  # type: ignore[arg-type]
+            f"{sum(float(row['mission_s']) for row in mine) / len(mine):7.0f}s {nees:5.1f}  "  # type: ignore[arg-type]  # as above
             + ", ".join(f"{strategy} {count}" for strategy, count in sorted(tried.items()))
         )
         for row in mine:
