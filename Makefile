@@ -19,7 +19,7 @@ run: $(STAMP)  ## the first mission, from a fresh machine to the report it wrote
 	@$(BIN)/longarm run $(MISSION)
 
 test: $(STAMP)  ## the whole test suite
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

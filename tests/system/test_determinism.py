@@ -17,7 +17,7 @@ mission:
   mission: hop
   waypoints:
     - {x: 2.2 m, y: -0.5 m}
-    - {x: 2.4 m, y: -0.5 m}
+    - {x: 2.3 m, y: -0.5 m}
 """
 
 pytestmark = pytest.mark.sim

@@ -20,12 +20,9 @@ SURVEYED = "marsyard"  # has a test of its own, which knows when the elevation m
 NO_SCENARIOS = ("coverage", SURVEYED)
 FILES = [path for path in sorted(SCENARIOS.rglob("*.yaml")) if path.stem not in NO_SCENARIOS]
 REPRESENTATIVE = (
-    "turning_on_loose_sand",
     "rock_on_path",
     "tracks/motor_dead",
-    "terrain/rock_in_a_narrow_corridor",
     "markers/marker_occluded",
-    "estimation/pose_outlier",
     "link/replayed_uplink",
     "executive/process_killed",
 )

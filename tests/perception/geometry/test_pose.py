@@ -180,9 +180,10 @@ def test_pose_from_images_meets_the_bound(range_m):
 @pytest.mark.slow
 @pytest.mark.parametrize("rig", [EXACT_RIG, RigCalibration()], ids=["exact head", "real head"])
 @pytest.mark.parametrize("range_m", list(PAIRS))
-def test_pose_from_500_image_sets_meets_the_bound(range_m, rig):
+def test_pose_from_many_image_sets_meets_the_bound(range_m, rig):
+    """`benchmarks/pose_bound.py` takes 500 of each."""
     true = scene(range_m, rig=rig)
-    assert_meets_bound(run(true, PAIRS[range_m], 500, np.random.default_rng([12, PAIRS[range_m]])), 1.3)
+    assert_meets_bound(run(true, PAIRS[range_m], 100, np.random.default_rng([12, PAIRS[range_m]])), 1.3)
 
 
 def test_chain_of_the_default_rig_has_four_markers():
