@@ -45,6 +45,7 @@ class Reason(StrEnum):
     DEVICE = "device"
     NO_STRATEGY = "no_strategy"
     GUARD = "guard"
+    UNSET = "unset"
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -15,7 +15,7 @@ from executive.tree.nodes.control import ControlNode, NodeContext
 from executive.tree.nodes.guarded import Guarded
 from executive.tree.nodes.leaf import Leaf
 from executive.tree.nodes.services import Services
-from executive.tree.ports import REQUIRED, FromTree
+from executive.tree.ports import REQUIRED, FromTree, PortError
 from executive.tree.scope import Scope
 from executive.tree.spec import NodeSpec, TreeSpec, fits, root_of, under
 from executive.tree.store import Binding, Slot, Store
@@ -98,7 +98,10 @@ class _Builder:
         children = [self.node(*child, scope, kind.skipped) for child in under(path, spec.children)]
         strategies = partial(self.instances, path, spec, scope)
         context = NodeContext(spec.name, path, self.trace, self.services, scope.typed, strategies)
-        return kind(_bindings(spec, scope)).make(children, context)
+        made = kind(_bindings(spec, scope)).make(children, context)
+        if any(not port.fixed and port.item_of is None for port in spec.kind.ports):
+            vars(made)["tick"] = partial(ticked, made, made.tick, path, self.trace)
+        return made
 
     def subtree(self, path: str, spec: NodeSpec, tree: TreeSpec, scope: Scope) -> Behaviour:
         inner = Scope(self.store, path, tree.values)
@@ -141,6 +144,19 @@ class _Builder:
         made = self.instance(path, name, tree, inner)
         self.paths[path] = made
         return made
+
+
+def ticked(
+    node: Behaviour, tick: Callable[[], Iterator[Behaviour]], path: str, trace: Trace
+) -> Iterator[Behaviour]:
+    """A control node's tick; a port of its own without a value ends it with that reason."""
+    try:
+        yield from tick()
+    except PortError as error:
+        trace.fail(path, error.outcome)
+        node.feedback_message = error.outcome.detail
+        node.stop(Status.FAILURE)
+        yield node
 
 
 def _bindings(spec: NodeSpec, scope: Scope) -> dict[str, Binding]:

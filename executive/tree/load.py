@@ -16,6 +16,8 @@ from executive.tree.catalogue import broken_nodes, node_types
 from executive.tree.file import TreeFile, declared_ports
 from executive.tree.node_type import NodeType
 from executive.tree.nodes.kind import LEAF_KIND
+from executive.tree.order import TreeOrder
+from executive.tree.order_of_nodes import order_of
 from executive.tree.reader import TreeReader
 from executive.tree.spec import NodeSpec, TreeSpec
 
@@ -91,6 +93,10 @@ class _Trees:
         root = reader.node(("root",)) if has_root else None
         if file is not None and ports is not None:
             problems.found.extend(reader.flow.problems())
+        order = TreeOrder()
+        if root is not None and not problems.found:
+            order, early = order_of(root, ports or ())
+            problems.found.extend(early)
         problems.check()
         if file is None or root is None:
             raise ConfigError([source.key_at(("root",)).problem("got no root, expected a node")])
@@ -98,7 +104,8 @@ class _Trees:
         if size > MAX_SIZE:
             message = f"got a tree of {size} nodes with its sub-trees, expected {MAX_SIZE} at most"
             raise ConfigError([source.at(()).problem(message)])
-        return TreeSpec(file.tree, file.doc, source.at(()).file, ports or (), root, reader.flow.types, size)
+        values, shown_file = reader.flow.types, source.at(()).file
+        return TreeSpec(file.tree, file.doc, shown_file, ports or (), root, values, size, order)
 
     def _tree(self, source: Source, stack: tuple[Path, ...], word: str, mark: Mark) -> TreeSpec:
         """The tree that a node of `source` uses, inside those of `stack`."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, ClassVar, Generic, Protocol, TypeVar, overload
 
+from executive.core.types import Outcome, Reason
 from executive.core.values import ROUTE, SEGMENT, TEXT, ValueType
 from executive.tree.store import Binding
 
@@ -56,12 +57,25 @@ class PortSpec:
     least: int | None = None
     item_of: str | None = None
 
+    @property
+    def may_be_unset(self) -> bool:
+        """Whether a node can do without a value for it."""
+        return self.default is None or isinstance(self.default, FromTree)
+
 
 class Bound(Protocol):
     """What has ports: each name bound to a literal or to a place in the tree's store."""
 
     @property
     def bindings(self) -> Mapping[str, Binding]: ...
+
+
+class PortError(Exception):
+    """A port cannot give its node a value; the node ends with this reason, as it does with any other."""
+
+    def __init__(self, reason: Reason, detail: str) -> None:
+        super().__init__(detail)
+        self.outcome: Outcome[object] = Outcome(reason, detail)
 
 
 class Port(Generic[T]):
@@ -94,10 +108,19 @@ class Port(Generic[T]):
     def __get__(self, node: Bound | None, owner: type) -> Port[T] | T:
         if node is None:
             return self
-        value: T = node.bindings[self.name].read()
+        binding = node.bindings[self.name]
+        value: T = binding.read()
+        if value is None and self.direction is not Direction.OUT and not self.may_be_unset:
+            raise PortError(Reason.UNSET, f"port {self.name}: {binding} is not set yet")
         if self.choices and value not in self.choices:  # a reference may bring anything
-            raise ValueError(f"port {self.name}: got {value!r}, expected one of {', '.join(self.choices)}")
+            expected = ", ".join(self.choices)
+            raise PortError(Reason.GUARD, f"port {self.name}: got {value!r}, expected one of {expected}")
         return value
+
+    @property
+    def may_be_unset(self) -> bool:
+        """Whether a node of this port can do without a value."""
+        return self.default is None or isinstance(self.default, FromTree)
 
     def spec(self) -> PortSpec:
         return PortSpec(

@@ -78,7 +78,9 @@ class TreeReader:
         ports = given_ports(self.source, place, kind, given, self.flow, local)
         children = given_children(self.source, place, kind, given, self.node, local)
         local.check()
-        return NodeSpec(kind, name, mark, ports, guards, children, tree)
+        marks = {key: self.source.at((*place, key)) for key in ports if key in given}
+        marks |= {key: self.source.at((*outer, key)) for key in guards}
+        return NodeSpec(kind, name, mark, ports, guards, children, tree, marks)
 
     def _guard(self, place: Place, local: Problems) -> Guard | None:
         text, mark = self.source.get(place), self.source.at(place)

@@ -25,6 +25,9 @@ class Attribute(Slot):
     def write(self, value: object) -> None:
         raise TypeError("an attribute of a value cannot be written to")
 
+    def __str__(self) -> str:
+        return f"{super().__str__()[:-1]}.{'.'.join(self.names)}}}"
+
 
 @dataclass
 class Scope:

@@ -11,6 +11,7 @@ from executive.core.values import ValueType
 from executive.tree.expressions.guards import Guard
 from executive.tree.node_type import NodeType
 from executive.tree.nodes.control import ControlNode
+from executive.tree.order import TreeOrder
 from executive.tree.ports import REQUIRED, PortSpec
 
 
@@ -54,11 +55,17 @@ class NodeSpec:
     guards: Mapping[str, Guard] = field(default_factory=dict)
     children: tuple[NodeSpec, ...] = ()
     tree: TreeSpec | None = None
+    marks: Mapping[str, Mark] = field(default_factory=dict)
+    """Where the value of each port and guard stands."""
 
     @property
     def type(self) -> str:
         """What the file calls its type."""
         return self.kind.name
+
+    def mark_of(self, key: str) -> Mark:
+        """Where a port or guard stands, or else the node."""
+        return self.marks.get(key, self.mark)
 
     @property
     def literals(self) -> dict[str, object]:
@@ -83,6 +90,7 @@ class TreeSpec:
     values: Mapping[str, ValueType[Any]]
     size: int = 1
     """Nodes in all, sub-trees unfolded."""
+    order: TreeOrder = field(default_factory=TreeOrder)
 
 
 def fits(strategy: TreeSpec, values: Mapping[str, ValueType[Any]]) -> bool:

@@ -29,6 +29,10 @@ class Slot:
     def write(self, value: object) -> None:
         self.store.values[self.key] = value
 
+    def __str__(self) -> str:
+        """As a file refers to it in the tree that it belongs to: `{pose}`."""
+        return f"{{{self.key.rpartition(':')[2]}}}"
+
 
 @dataclass(frozen=True)
 class Constant:
@@ -41,6 +45,9 @@ class Constant:
 
     def write(self, value: object) -> None:
         raise TypeError("a literal cannot be written to")
+
+    def __str__(self) -> str:
+        return "its value" if self.value is None else str(self.value)
 
 
 Binding = Slot | Constant

@@ -1,8 +1,9 @@
 """Small safe expressions over the values of a tree: `abs({pose.cross_track}) < {segment.off_track}`.
 
 Arithmetic, comparisons (also chained), and/or/not, abs/min/max, numbers with or without unit, quoted text,
-true/false, and references in braces. Dimensions are checked when the tree is loaded. A value that is unset
-(or not a number) at run time makes the guard *unknown*: `Guard.holds` then returns None.
+true/false, and references in braces. Dimensions are checked when the tree is loaded. What cannot be decided
+at run time (a value unset or not a number, a division by zero, an error in a value's own attribute) is
+neither true nor false: `Guard.decide` raises, and `Guard.holds` returns None.
 """
 
 from __future__ import annotations
@@ -23,6 +24,10 @@ from executive.tree.expressions.typed import (
 )
 
 
+class UndecidedError(Exception):
+    """A guard is neither true nor false now; the message says why."""
+
+
 @dataclass(frozen=True)
 class Guard:
     """A parsed expression; `text` is as the file has it."""
@@ -30,11 +35,24 @@ class Guard:
     text: str
     body: Expression = field(compare=False)
 
-    def holds(self, read: Read) -> bool | None:
-        """True, False, or None where something it needs is unset."""
+    def decide(self, read: Read) -> bool:
+        """True or False; UndecidedError, saying why, where it is neither."""
         try:
             return bool(self.body.evaluate(read))
-        except (UnknownValueError, ZeroDivisionError, OverflowError):
+        except UnknownValueError as unknown:
+            raise UndecidedError(str(unknown)) from None
+        except ZeroDivisionError:
+            raise UndecidedError("division by zero") from None
+        except (
+            Exception
+        ) as error:  # a value's attributes may be anybody's code: no guard lets a node go on by it
+            raise UndecidedError(f"{type(error).__name__}: {error}") from error
+
+    def holds(self, read: Read) -> bool | None:
+        """True, False, or None where it cannot be decided."""
+        try:
+            return self.decide(read)
+        except UndecidedError:
             return None
 
     def check(self, types: Mapping[str, ValueType[Any]]) -> None:
@@ -42,6 +60,15 @@ class Guard:
         kind = self.body.kind(types)
         if kind != "flag":
             raise GuardError(self.body.offset, f"got {kind_text(kind)}, expected something true or false")
+        if not self.body.references:
+            try:
+                self.decide(_nothing)
+            except UndecidedError as why:
+                raise GuardError(self.body.offset, f"this can never be decided: {why}") from None
+
+
+def _nothing(name: str, attributes: tuple[str, ...]) -> None:
+    """Reads no value."""
 
 
 def parse_guard(text: str, names: Iterable[str] = ()) -> Guard:

@@ -32,7 +32,7 @@ class GuardError(ValueError):
 
 
 class UnknownValueError(Exception):
-    """Something asked for has no value now."""
+    """Something asked for has no value now; the message says what."""
 
 
 @dataclass(frozen=True)
@@ -62,14 +62,21 @@ def reference(token: Token) -> Expression:
 
     def evaluate(read: Read) -> Any:
         value = read(name, attributes)
-        if value is None or (isinstance(value, float) and math.isnan(value)):
-            raise UnknownValueError
-        return value
+        if value is None:
+            raise UnknownValueError(f"{token.text} is not set")
+        return _number(value, token.text)
 
     def kind(types: Mapping[str, ValueType[Any]]) -> Kind:
         return _reference_kind(token.offset, name, attributes, types)
 
     return Expression(token.offset, evaluate, kind, ((token.offset, name, attributes),))
+
+
+def _number(value: Any, words: str) -> Any:
+    """The value; UnknownValueError for a float that is not a number."""
+    if isinstance(value, float | np.floating) and math.isnan(value):
+        raise UnknownValueError(f"{words} is not a number")
+    return value
 
 
 def _reference_kind(
@@ -139,7 +146,7 @@ _COMPARE: dict[str, Callable[[Any, Any], bool]] = {
 
 def comparison(terms: list[Expression], signs: list[Token]) -> Expression:
     def evaluate(read: Read) -> bool:
-        values = [term.evaluate(read) for term in terms]
+        values = [_number(term.evaluate(read), "one side") for term in terms]
         pairs = zip(signs, values, values[1:], strict=False)
         return all(_COMPARE[sign.text](left, right) for sign, left, right in pairs)
 
@@ -177,16 +184,35 @@ def addition(token: Token, left: Expression, right: Expression) -> Expression:
 
 
 def product(token: Token, left: Expression, right: Expression) -> Expression:
-    apply = operator.mul if token.text == "*" else operator.truediv
+    apply = operator.mul if token.text == "*" else _divided
     sign = 1 if token.text == "*" else -1
 
     def kind(types: Mapping[str, ValueType[Any]]) -> Kind:
         powers = dict(_number_kind(left, types))
+        if sign < 0 and _is_zero(right):
+            raise GuardError(right.offset, "got a division by zero")
         for unit, power in _number_kind(right, types):
             powers[unit] = powers.get(unit, 0) + sign * power
         return tuple(sorted((unit, power) for unit, power in powers.items() if power))
 
     return _arithmetic(apply, left, right, kind)
+
+
+def _divided(left: Any, right: Any) -> Any:
+    """The quotient; ZeroDivisionError also for numbers of numpy, which only warn."""
+    if not isinstance(right, np.ndarray) and right == 0:
+        raise ZeroDivisionError
+    return left / right
+
+
+def _is_zero(term: Expression) -> bool:
+    """Whether a term without references comes to zero."""
+    if term.references:
+        return False
+    try:
+        return bool(term.evaluate(lambda name, attributes: None) == 0)
+    except (ArithmeticError, UnknownValueError):
+        return False
 
 
 def _arithmetic(

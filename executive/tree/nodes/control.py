@@ -27,6 +27,7 @@ from executive.core.values import ValueType
 from executive.tree.abilities import Abilities, any_of
 from executive.tree.declared import Declared
 from executive.tree.nodes.services import Services
+from executive.tree.order import Child, Ends, Known, in_turn
 from executive.tree.store import Binding
 from executive.tree.trace import Trace
 
@@ -83,6 +84,14 @@ class ControlNode(Declared, ABC):
         By default it passes on what its children do.
         """
         return any_of(inside)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        """Which values are certain to be set after it, from those that are before it.
+
+        By default the children are taken to run in turn, and to be all there is; go through each with what is
+        certain when it is entered first.
+        """
+        return in_turn(before, children, until=False)
 
     def interrupts(self, index: int, count: int) -> bool:
         """Whether child `index` of `count` may be ended by this node, or for a sibling, while under way."""

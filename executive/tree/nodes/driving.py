@@ -26,7 +26,7 @@ from executive.navigation import guidance
 from executive.navigation.belt_watch import BeltWatch
 from executive.navigation.guidance import Belts
 from executive.tree.nodes.action import ActionLeaf
-from executive.tree.nodes.base import FromTree, In, InOut
+from executive.tree.nodes.base import FromTree, In, Out
 
 DRIVING_OUTCOMES: tuple[Reason, ...] = (
     Reason.DONE,
@@ -46,7 +46,7 @@ class DrivingLeaf(ActionLeaf):
 
     needs = ("drive",)
 
-    pose = InOut[PoseEstimate](POSE, "the pose, predicted on while driving")
+    pose = Out[PoseEstimate](POSE, "the pose, predicted on while driving")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))
     tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
     tension_limit = In[float](FORCE, "stop at this pull; half of one at a snag may not be felt", default=4.0)

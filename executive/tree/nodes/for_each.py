@@ -45,8 +45,7 @@ class _ForEach(Decorator):
         self.remaining: list[object] = []
 
     def initialise(self) -> None:
-        given: Sequence[object] | None = self.ports.items
-        self.remaining = list(given or ())
+        self.remaining = list(self.ports.items)
         if self.remaining:
             self.ports.item = self.remaining[0]
 

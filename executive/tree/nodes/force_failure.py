@@ -10,6 +10,7 @@ from py_trees.behaviour import Behaviour
 from executive.tree.abilities import FAILS, RUNS, Abilities, any_of, only, where
 from executive.tree.groot import Groot
 from executive.tree.nodes.control import Children, ControlNode, NodeContext
+from executive.tree.order import Child, Ends, Known, both, in_turn
 
 
 class ForceFailure(ControlNode):
@@ -25,3 +26,7 @@ class ForceFailure(ControlNode):
 
     def abilities(self, inside: Sequence[Abilities]) -> Abilities:
         return only(any_of(inside), RUNS) | where(True, FAILS)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        ends = in_turn(before, children, until=False)
+        return Ends(None, both(ends.succeeded, ends.failed))

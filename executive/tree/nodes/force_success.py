@@ -10,6 +10,7 @@ from py_trees.behaviour import Behaviour
 from executive.tree.abilities import RUNS, SUCCEEDS, Abilities, any_of, only, where
 from executive.tree.groot import Groot
 from executive.tree.nodes.control import Children, ControlNode, NodeContext
+from executive.tree.order import Child, Ends, Known, both, in_turn
 
 
 class ForceSuccess(ControlNode):
@@ -25,3 +26,7 @@ class ForceSuccess(ControlNode):
 
     def abilities(self, inside: Sequence[Abilities]) -> Abilities:
         return only(any_of(inside), RUNS) | where(True, SUCCEEDS)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        ends = in_turn(before, children, until=False)
+        return Ends(both(ends.succeeded, ends.failed), None)

@@ -8,7 +8,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from executive.core.types import Reason
-from executive.tree.expressions.guards import Guard
+from executive.tree.expressions.guards import Guard, UndecidedError
 from executive.tree.expressions.typed import Read
 from executive.tree.nodes.ending import EndingDecorator
 from executive.tree.trace import Trace
@@ -18,7 +18,8 @@ class Guarded(EndingDecorator):
     """Its child under skip_if, success_if, failure_if (looked at on entry) and while (at every tick).
 
     `skipped` is what a skipped node counts as: SUCCESS in a sequence or parallel, FAILURE in a selector.
-    A guard that cannot be decided, because a value is unset, changes nothing.
+    A guard that cannot be decided fails closed: the node does not go on under a `while` or `failure_if` that
+    nobody can answer, and it is neither skipped nor taken for done by a `skip_if` or `success_if`.
     """
 
     def __init__(
@@ -37,8 +38,8 @@ class Guarded(EndingDecorator):
     def tick(self) -> Iterator[Behaviour]:
         self.feedback_message = ""
         decided = self.on_entry() if self.status is not Status.RUNNING else None
-        if decided is None and self.holds("while") is False:
-            decided = self.fail(Reason.GUARD, f"while {self.guards['while'].text}")
+        if decided is None:
+            decided = self.failing("while", False)
         if decided is not None:
             self.end(decided)
             yield self
@@ -46,18 +47,26 @@ class Guarded(EndingDecorator):
         yield from super().tick()
 
     def on_entry(self) -> Status | None:
-        if self.holds("failure_if"):
-            return self.fail(Reason.GUARD, f"failure_if {self.guards['failure_if'].text}")
-        if self.holds("success_if"):
-            self.feedback_message = f"success_if {self.guards['success_if'].text}"
-            return Status.SUCCESS
-        if self.holds("skip_if"):
-            self.feedback_message = f"skip_if {self.guards['skip_if'].text}"
-            return self.skipped
+        """How the node ends without having begun; None where it may begin."""
+        failed = self.failing("failure_if", True)
+        if failed is not None:
+            return failed
+        for word, status in (("success_if", Status.SUCCESS), ("skip_if", self.skipped)):
+            if word in self.guards and self.guards[word].holds(self.read):
+                self.feedback_message = f"{word} {self.guards[word].text}"
+                return status
         return None
 
-    def holds(self, word: str) -> bool | None:
-        return self.guards[word].holds(self.read) if word in self.guards else None
+    def failing(self, word: str, when: bool) -> Status | None:
+        """The node's failure where this guard says so, or cannot say; None where it may go on."""
+        if word not in self.guards:
+            return None
+        guard = self.guards[word]
+        try:
+            fails, why = guard.decide(self.read) is when, ""
+        except UndecidedError as undecided:
+            fails, why = True, f" cannot be decided: {undecided}"
+        return self.fail(Reason.GUARD, f"{word} {guard.text}{why}") if fails else None
 
     def update(self) -> Status:
         status: Status = self.decorated.status

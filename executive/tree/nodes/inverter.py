@@ -10,6 +10,7 @@ from py_trees.behaviour import Behaviour
 from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities, any_of, only, where
 from executive.tree.groot import Groot
 from executive.tree.nodes.control import Children, ControlNode, NodeContext
+from executive.tree.order import Child, Ends, Known, in_turn
 
 
 class Inverter(ControlNode):
@@ -26,3 +27,7 @@ class Inverter(ControlNode):
     def abilities(self, inside: Sequence[Abilities]) -> Abilities:
         able = any_of(inside)
         return only(able, RUNS) | where(SUCCEEDS in able, FAILS) | where(FAILS in able, SUCCEEDS)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        ends = in_turn(before, children, until=False)
+        return Ends(ends.failed, ends.succeeded)

@@ -20,6 +20,7 @@ from executive.core.errors import NodeRaised
 from executive.core.types import Outcome, Reason
 from executive.tree.declared import Declared
 from executive.tree.nodes.services import Services
+from executive.tree.ports import PortError
 from executive.tree.store import Binding
 from executive.tree.trace import Trace
 
@@ -39,6 +40,7 @@ class Leaf(Declared, Behaviour):
         self, name: str, path: str, services: Services, bindings: Mapping[str, Binding], trace: Trace
     ) -> None:
         super().__init__(name)
+        self._refused: Outcome[object] | None = None
         self.path, self.services, self.bindings, self.trace = path, services, bindings, trace
 
     @classmethod
@@ -59,12 +61,16 @@ class Leaf(Declared, Behaviour):
 
     def initialise(self) -> None:
         self.trace.entered[self.path] = self
+        self._refused = None
         with ErrorsOf(self.path):
-            self.begin()
+            try:
+                self.begin()
+            except PortError as error:
+                self._refused = error.outcome
 
     def update(self) -> Status:
         with ErrorsOf(self.path):
-            outcome = self._alarmed() or self.step()
+            outcome = self._stepped()
         if outcome is None:
             self.feedback_message = ""
             return Status.RUNNING
@@ -74,6 +80,13 @@ class Leaf(Declared, Behaviour):
             return Status.FAILURE
         self.trace.end(self.path, outcome)
         return Status.SUCCESS
+
+    def _stepped(self) -> Outcome[object] | None:
+        """What this tick comes to. A port without a value ends the leaf, in `begin` as in `step`."""
+        try:
+            return self._refused or self._alarmed() or self.step()
+        except PortError as error:
+            return error.outcome
 
     def _alarmed(self) -> Outcome[object] | None:
         """What ends a leaf that is under way from outside. One that answers at once never is."""

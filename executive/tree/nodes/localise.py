@@ -21,14 +21,14 @@ from executive.core.values import (
     SEGMENT,
 )
 from executive.tree.nodes.action import ActionLeaf
-from executive.tree.nodes.base import FromTree, In, InOut
+from executive.tree.nodes.base import FromTree, In, Out
 
 
 class Localise(ActionLeaf):
     """Measure the rover's pose by vision, at rest, and hold it against the prediction."""
 
     quality = In[Quality](QUALITY, "trend, precise or far", default=Quality.PRECISE)
-    pose = InOut[PoseEstimate](POSE, "the pose, as measured and predicted")
+    pose = Out[PoseEstimate](POSE, "the pose, as measured and predicted")
     segment = In[Segment | None](SEGMENT, "the segment under way", default=FromTree("segment"))
     budget = In[float](DURATION, "mission time it may take", default=900.0)
     position = In[float](LENGTH, "standard deviation wanted; 0: that of the quality", default=0.0)

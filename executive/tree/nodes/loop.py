@@ -10,6 +10,7 @@ from py_trees.composites import Composite
 
 from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities, only, where
 from executive.tree.nodes.control import Children, ControlNode, NodeContext
+from executive.tree.order import Child, Ends, Known
 
 
 class Loop(ControlNode):
@@ -27,6 +28,11 @@ class Loop(ControlNode):
         until, do = inside
         goes_on = FAILS in until and SUCCEEDS in do  # the condition is asked again in a later tick
         return only(until, SUCCEEDS, RUNS) | only(do, FAILS, RUNS) | where(goes_on, RUNS)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        until, do = children
+        asked = until(before)
+        return Ends(asked.succeeded, None if asked.failed is None else do(asked.failed).failed)
 
 
 class _Loop(Composite):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 
 from py_trees import common, composites
 from py_trees.behaviour import Behaviour
@@ -11,6 +12,7 @@ from executive.core.values import TEXT
 from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities, all_of, any_of, only
 from executive.tree.groot import Attribute, Groot
 from executive.tree.nodes.control import ControlNode, NodeContext
+from executive.tree.order import Child, Ends, Known, both
 from executive.tree.ports import In
 
 
@@ -48,6 +50,14 @@ class Parallel(ControlNode):
         able = any_of(inside)
         succeeds = able if self.policy == "one" else all_of(inside)
         return only(able, RUNS, FAILS) | only(succeeds, SUCCEEDS)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        ends = [child(before) for child in children]
+        succeeded = [each.succeeded for each in ends]
+        if self.policy == "one":
+            return Ends(reduce(both, succeeded), before)
+        done = None if None in succeeded else frozenset[str]().union(*(known for known in succeeded if known))
+        return Ends(done, before)
 
     def interrupts(self, index: int, count: int) -> bool:
         return count > 1

@@ -11,6 +11,7 @@ from executive.core.values import INTEGER
 from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities, any_of, only, where
 from executive.tree.groot import Attribute, Groot, Variant
 from executive.tree.nodes.control import Children, ControlNode, NodeContext
+from executive.tree.order import Child, Ends, Known, in_turn
 from executive.tree.ports import In
 
 
@@ -43,3 +44,7 @@ class Repeat(ControlNode):
         able = any_of(inside)
         ends = able if self.times is not None else only(able, FAILS, RUNS)
         return ends | where(SUCCEEDS in able, RUNS)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        ends = in_turn(before, children, until=False)
+        return ends if self.times is not None else Ends(None, ends.failed)

@@ -12,6 +12,7 @@ from executive.core.values import FLAG
 from executive.tree.abilities import FAILS, RUNS, SUCCEEDS, Abilities, all_of, any_of, only
 from executive.tree.groot import Groot, Variant
 from executive.tree.nodes.control import ControlNode, NodeContext
+from executive.tree.order import Child, Ends, Known, in_turn
 from executive.tree.ports import In
 
 
@@ -43,6 +44,9 @@ class Selector(ControlNode):
     def abilities(self, inside: Sequence[Abilities]) -> Abilities:
         able = any_of(inside)
         return only(able, RUNS, SUCCEEDS) | only(all_of(inside), FAILS)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        return in_turn(before, children, until=True)
 
     def interrupts(self, index: int, count: int) -> bool:
         return index > 0 and not self.memory

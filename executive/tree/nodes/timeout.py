@@ -14,6 +14,7 @@ from executive.tree.abilities import FAILS, RUNS, Abilities, any_of, where
 from executive.tree.groot import Attribute, Groot
 from executive.tree.nodes.control import Children, ControlNode, NodeContext
 from executive.tree.nodes.ending import EndingDecorator
+from executive.tree.order import Child, Ends, Known, in_turn
 from executive.tree.ports import In
 
 
@@ -43,6 +44,10 @@ class Timeout(ControlNode):
     def abilities(self, inside: Sequence[Abilities]) -> Abilities:
         able = any_of(inside)
         return able | where(RUNS in able, FAILS)
+
+    def certain(self, before: Known, children: Sequence[Child]) -> Ends:
+        ends = in_turn(before, children, until=False)
+        return Ends(ends.succeeded, before)
 
     def interrupts(self, index: int, count: int) -> bool:
         return True
