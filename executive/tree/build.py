@@ -134,7 +134,7 @@ class _Builder:
         return made
 
     def strategy(self, path: str, name: str, tree: TreeSpec, scope: Scope) -> Behaviour:
-        inner = Scope(self.store, path, tree.values)
+        inner = Scope(self.store, path, tree.values, around=scope)
         for port in tree.ports:
             known = scope.types.get(port.name)
             if known is not None and known.name == port.type.name:

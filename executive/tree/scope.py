@@ -31,12 +31,17 @@ class Attribute(Slot):
 
 @dataclass
 class Scope:
-    """The values of one instance of a tree: what each name is bound to."""
+    """The values of one instance of a tree: what each name is bound to.
+
+    `around` is the tree that a strategy recovers: what a leaf takes from the tree by itself, such as the
+    segment under way, it finds there if the strategy's own tree has none.
+    """
 
     store: Store
     path: str
     types: Mapping[str, ValueType[Any]]
     bound: dict[str, Binding] = field(default_factory=dict)
+    around: Scope | None = None
 
     def binding(self, name: str) -> Binding:
         """The place of a value; one that nobody passed in is the instance's own."""
@@ -66,9 +71,11 @@ class Scope:
         return Constant(None if port.default is REQUIRED else port.default)
 
     def typed(self, name: str, kind: ValueType[Any]) -> Binding:
-        """The place of the tree's own value of this name and type; a constant None where it has none."""
+        """The place of the value of this name and type, here or around; a constant None where there is none."""
         known = self.types.get(name)
-        return self.binding(name) if known is not None and known.name == kind.name else Constant(None)
+        if known is not None and known.name == kind.name:
+            return self.binding(name)
+        return Constant(None) if self.around is None else self.around.typed(name, kind)
 
     def read(self, name: str, attributes: tuple[str, ...]) -> Any:
         return read_attribute(self.types[name], self.binding(name).read(), attributes)

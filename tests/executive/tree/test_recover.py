@@ -81,3 +81,13 @@ def test_recover_inside_a_strategy_is_refused(bench):
     nested = {"nested": "tree: nested\nroot: {recover: {attempts: 1, child: act}}"}
     with pytest.raises(ConfigError, match="recover inside a strategy"):
         bench.build("{recover: {attempts: 2, child: act}}", ScriptedPool(), nested)
+
+
+def test_a_strategys_leaf_finds_what_the_tree_that_recovers_has(bench):
+    """Else a pose it measures is of no segment, and a guard on `{pose.cross_track}` fails after it."""
+    strategies = {"look": "tree: look\nroot: {note: {}}", "own": "tree: own\nroot: {sequence: [note]}"}
+    root = "{recover: {attempts: 2, child: {act: {reason: blocked}}}}"
+    ports = "{length: {type: length, direction: in}}"
+    tree = bench.build(root, ScriptedPool("look", "own"), strategies, ports, length=0.25)
+    bench.run(tree)
+    assert [said for said in bench.diary if isinstance(said, float)] == [0.25, 0.25]
