@@ -148,7 +148,9 @@ def test_what_has_no_samples_at_all_is_not_met_and_says_so():
 
 def test_arithmetic_without_a_result_is_unknown():
     assert judged("always x / y < 2", x={0: 1.0}, y={0: 0.0, 5: 1.0}).met
-    assert judged("always x / 0 < 2", x={0: 1.0}).warning == "unknown: its arithmetic has no result"
+    assert (
+        judged("always x / y < 2", x={0: 1.0}, y={0: 0.0}).warning == "unknown: its arithmetic has no result"
+    )
 
 
 @pytest.mark.parametrize(
