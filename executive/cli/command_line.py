@@ -1,18 +1,20 @@
 """The `longarm` command. Thin: it parses arguments, calls, prints, and turns errors into exit codes.
 
-0 good, 1 ended otherwise or problems found, 2 bad input or usage, 3 a defect.
+0 good, 1 ended otherwise or problems found, 2 bad input or usage, 3 a defect, 128 + n ended by signal n.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
 
 import click
 
 from executive.cli.catalogue import CatalogueGroup
-from executive.core.errors import LongarmError
+from executive.core.errors import DamagedError, LongarmError
+from executive.core.interrupts import number_of, raise_when_asked
 from executive.core.registry import Project, in_project, project_file
 
 DEFECT = 3
@@ -20,7 +22,13 @@ DEFECT = 3
 
 def main() -> None:
     """Entry point: everything that goes wrong ends in an exit code and words, never in a bare traceback."""
-    sys.exit(invoke(sys.argv[1:]))
+    raise_when_asked()
+    code = invoke(sys.argv[1:])
+    try:
+        sys.stdout.flush()
+    except OSError:  # whoever read this has gone
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(code)
 
 
 def invoke(arguments: list[str]) -> int:
@@ -30,15 +38,22 @@ def invoke(arguments: list[str]) -> int:
             code = cli.main(args=arguments, prog_name="longarm", standalone_mode=False)
     except click.exceptions.Exit as error:
         return error.exit_code
-    except click.exceptions.Abort:
+    except (click.exceptions.Abort, KeyboardInterrupt) as interrupt:
+        asked = interrupt if isinstance(interrupt, KeyboardInterrupt) else interrupt.__cause__
         click.echo("longarm: interrupted", err=True)
-        return 1
+        return 128 + number_of(asked)
     except click.ClickException as error:
         error.show()
         return 2
+    except DamagedError as error:
+        click.echo(str(error), err=True)
+        return 1
     except LongarmError as error:
         click.echo(str(error), err=True)
         return 2
+    except OSError as error:
+        click.echo(f"longarm: {error}", err=True)
+        return DEFECT
     except Exception as error:  # a defect: one line, the run folder has the traceback
         place = _deepest(error)
         words = " ".join(str(error).split())
@@ -86,6 +101,7 @@ FILE = click.Path(path_type=Path)
 @click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Replace one value of the scenario."
 )
+@click.option("--force", is_flag=True, help="Write over the run that --out holds already.")
 @click.option("--json", "as_json", is_flag=True, help="Print result.json and nothing else.")
 @click.option("--quiet", is_flag=True, help="Print nothing.")
 def run(
@@ -94,6 +110,7 @@ def run(
     out: Path | None,
     tier: str | None,
     overrides: tuple[str, ...],
+    force: bool,
     as_json: bool,
     quiet: bool,
 ) -> int:
@@ -110,7 +127,8 @@ def run(
     for broken in () if quiet else (*broken_strategies(), *broken_instruments()):
         click.echo(f"longarm: the run does without {broken}", err=True)
     file = located(file, "scenarios", "missions")
-    finished = app.run(file, app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json)))
+    options = app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json), force=force)
+    finished = app.run(file, options)
     if as_json:
         click.echo(json.dumps(finished.result.to_json(), indent=2))
     elif not quiet:
@@ -119,6 +137,24 @@ def run(
         where = finished.folder / "traceback.txt"
         click.echo(f"longarm: a defect: {finished.result.reason} ({where})", err=True)
     return finished.exit_code
+
+
+@cli.command("verify-record")
+@click.argument("run_dir", type=FILE)
+@click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
+def verify_record(run_dir: Path, as_json: bool) -> int:
+    """Say whether the records of a run are what was written: exit 1 and where, if not.
+
+    Example: longarm verify-record runs/first_traverse-0
+    """
+    from executive.record.verify import verify
+
+    found = verify(run_dir)
+    if as_json:
+        click.echo(json.dumps({"sound": not found.problems, "problems": list(found.problems)}, indent=2))
+    else:
+        click.echo("\n".join(found.problems) or f"{run_dir}: the records are what was written")
+    return int(bool(found.problems))
 
 
 @cli.command()

@@ -47,6 +47,10 @@ class RecordError(LongarmError):
     """A run folder lacks what was asked of it, or its record cannot be read."""
 
 
+class DamagedError(RecordError):
+    """A record is not what was written; the message says where."""
+
+
 class StrategyRaised(Exception):
     """A strategy's own code raised: a defect of the plug-in, named."""
 

@@ -16,6 +16,7 @@ from mcap.records import Message as McapMessage
 from mcap.stream_reader import StreamReader
 
 from executive.core.errors import RecordError
+from executive.record.integrity import require_sound
 from executive.record.topics import topic_named
 
 # what a reader may meet at the place where a file was cut off or overwritten
@@ -50,10 +51,12 @@ class Message:
 def read_record(path: Path) -> Iterator[Message]:
     """The messages in the order written, up to the end or the first byte that is missing or wrong.
 
-    RecordError if the file is not there. A file that is cut off anywhere yields what lies before.
+    RecordError if the file is not there; DamagedError if it is not what the run's check sums say. A file that
+    a kill has cut off anywhere yields what lies before.
     """
     if not path.is_file():
         raise RecordError(f"{path}: no such record")
+    require_sound(path)
     channels: dict[int, str] = {}
     for record in _records(path):
         if isinstance(record, Channel):

@@ -2,15 +2,46 @@
 
 from __future__ import annotations
 
+import fcntl
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from executive.core.errors import ConfigError, Problem
+from executive.record.integrity import SUMS
+
+LOCK = ".running"
 
 RUN_FILES = (
     *("scenario.yaml", "record.mcap", "truth.mcap"),
-    *("result.json", "report.html", "traceback.txt"),
+    *("result.json", "report.html", "traceback.txt", SUMS),
 )
+
+
+def refuse_used(folder: Path) -> None:
+    """ConfigError for a folder that holds anything but a plain lock: nobody's run is written over unasked."""
+    if folder.is_dir() and any(path.name != LOCK for path in folder.iterdir()):
+        message = f"got {folder}, which is not empty, expected a new folder, or --force to write over its run"
+        raise ConfigError([Problem("--out", 1, 1, message)])
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """The folder is this process's own meanwhile; ConfigError where another run is being written there.
+
+    The lock goes with the process, however that ends.
+    """
+    with (folder / LOCK).open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            message = f"got {folder}, where another run is being written, expected a folder of its own"
+            raise ConfigError([Problem("--out", 1, 1, message)]) from None
+        try:
+            yield
+        finally:
+            (folder / LOCK).unlink(missing_ok=True)
 
 
 def make_folder(folder: Path) -> None:
@@ -28,7 +59,7 @@ def write_traceback(folder: Path, defect: BaseException) -> None:
 def unwrite(folder: Path, made: bool) -> None:
     for name in RUN_FILES:
         (folder / name).unlink(missing_ok=True)
-    if made:
+    if made and not any(folder.iterdir()):
         folder.rmdir()
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from pydantic import TypeAdapter, ValidationError
 
 from executive.core.errors import RecordError
+from executive.core.files import write_whole
 from executive.record.rows import JudgedRow
 
 SCHEMA = 1
@@ -164,7 +165,7 @@ def read_result(path: Path) -> RunResult:
 
 def write_result(path: Path, result: RunResult) -> None:
     """Write strictly valid JSON, with a newline at the end."""
-    path.write_text(json.dumps(result.to_json(), indent=2, allow_nan=False) + "\n")
+    write_whole(path, json.dumps(result.to_json(), indent=2, allow_nan=False) + "\n")
 
 
 def _plain(value: object) -> object:

@@ -11,6 +11,7 @@ import numpy as np
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
+from executive.core.files import write_whole
 from executive.record.events import Start
 from executive.report.cross_track import cross_track_figure
 from executive.report.figure import Figure
@@ -42,7 +43,7 @@ def write_report(run_dir: Path, tree_svg: str | None = None) -> Path:
     """
     run = gather(run_dir)
     path = run_dir / "report.html"
-    path.write_text(render(run, tree_svg))
+    write_whole(path, render(run, tree_svg))
     return path
 
 

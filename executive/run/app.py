@@ -13,16 +13,21 @@ from executive.config.reporter import REPORTER_KIND
 from executive.core import registry
 from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError, RecordError
+from executive.core.files import write_whole
+from executive.core.interrupts import held_back
 from executive.core.one_thread import one_thread
 from executive.core.registry import in_project
 from executive.pool import Strategy
 from executive.record import History, RunResult, events, read_result, write_result
+from executive.record.integrity import RECORDS, require_sound, write_sums
 from executive.record.recorder import Recorder
 from executive.record.result import RunFigures
 from executive.record.run_folder import (
     RUN_FILES,
     free_folder,
+    locked,
     make_folder,
+    refuse_used,
     unwrite,
     write_traceback,
 )
@@ -33,7 +38,7 @@ from executive.run.judging import exit_code, judged
 from executive.run.progress import progress_bar
 from executive.run.resolve import resolve_scenario
 from executive.run.resolved import ResolvedScenario
-from executive.run.runner import RunEnd, ended_by, execute
+from executive.run.runner import RunEnd, ended_by, execute, interrupted
 from executive.tree.strategies import load_strategies, strategy_trees
 
 
@@ -46,6 +51,8 @@ class RunOptions:
     tier: str | None = None
     overrides: Sequence[str] = ()
     bar: bool = True
+    force: bool = True
+    """Whether a folder that holds a run already is written over."""
     report: bool = True
     """Whether `report.html` is written; `longarm report` can do it later."""
 
@@ -80,10 +87,25 @@ def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     watch = Stopwatch()
     folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
+    if not options.force:
+        refuse_used(folder)
     make_folder(folder)
+    with locked(folder):
+        return _written(scenario, strategies, folder, watch, options, made)
+
+
+def _written(
+    scenario: ResolvedScenario,
+    strategies: tuple[Strategy, ...],
+    folder: Path,
+    watch: Stopwatch,
+    options: RunOptions,
+    made: bool,
+) -> Finished:
+    """The run, written into a folder that is this process's own; `made` for it."""
     for stale in RUN_FILES:
         (folder / stale).unlink(missing_ok=True)
-    (folder / "scenario.yaml").write_text(scenario.dump())  # first, so that a run cut off can be repeated
+    write_whole(folder / "scenario.yaml", scenario.dump())  # first, so that a run cut off can be repeated
     try:
         with one_thread():
             end = _execute(scenario, strategies, folder, watch, options.bar)
@@ -93,7 +115,8 @@ def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     if end.defect is not None:
         write_traceback(folder, end.defect)
     try:
-        return _conclude(scenario, folder, end, watch, options.report)
+        with held_back():
+            return _conclude(scenario, folder, end, watch, options.report)
     except Exception as defect:
         write_traceback(folder, defect)
         raise
@@ -110,6 +133,8 @@ def report(folder: Path) -> Path:
             return registry.get(REPORTER_KIND, name).write(folder)
     if not (folder / "record.mcap").is_file():
         raise RecordError(f"{folder}: got no record.mcap, expected a run or campaign folder")
+    for name in RECORDS:
+        require_sound(folder / name)
     return write_report(folder, _tree_svg(folder))
 
 
@@ -131,17 +156,17 @@ def _execute(
         tick_s=TICK_S,
     )
     with Recorder(folder / "record.mcap") as recorder:
-        write_start(recorder, scenario)
-        with progress_bar(scenario.name, route, bar) as listeners:
-            try:
+        try:
+            write_start(recorder, scenario)
+            with progress_bar(scenario.name, route, bar) as listeners:
                 prepared = set_up(scenario, strategies, request, recorder, watch, listeners)
-            except LongarmError:
-                raise
-            except Exception as defect:  # a plug-in that cannot even be made
-                end = ended_by(defect)
-                recorder.write(events.Stop(end.outcome, end.reason), 0.0)
-                return end
-            end = execute(prepared)
+                end = execute(prepared)
+        except LongarmError:
+            raise
+        except (Exception, KeyboardInterrupt) as early:  # a plug-in that cannot even be made; a signal
+            end = interrupted(early) if isinstance(early, KeyboardInterrupt) else ended_by(early)
+            recorder.write(events.Stop(end.outcome, end.reason), 0.0)
+            return end
     for part, spent in prepared.backend.wall_s().items():
         watch.spent_s[part] += spent
     return end
@@ -157,9 +182,11 @@ def _conclude(
     )
     result, met = judged(scenario, folder, figures)
     write_result(folder / "result.json", result)
+    write_sums(folder)
     if with_report:
         write_report(folder, _tree_svg(folder))
-    return Finished(folder, read_result(folder / "result.json"), exit_code(result.outcome, met), end.defect)
+    code = exit_code(result.outcome, met) if end.signal is None else 128 + end.signal
+    return Finished(folder, read_result(folder / "result.json"), code, end.defect)
 
 
 def _tree_svg(folder: Path) -> str | None:

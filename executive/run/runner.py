@@ -12,6 +12,7 @@ from py_trees.common import Status
 from executive.core.clock import Stopwatch
 from executive.core.devices import DRIVE
 from executive.core.errors import NodeRaised
+from executive.core.interrupts import number_of, words_of
 from executive.core.ports import Backend, Devices
 from executive.core.types import Outcome, Reason
 from executive.record import events
@@ -36,6 +37,8 @@ class RunEnd:
     reason: str | None
     defect: BaseException | None = None
     cut: bool = False
+    signal: int | None = None
+    """The signal that asked for this end."""
 
 
 @dataclass
@@ -61,8 +64,8 @@ def execute(run: Run) -> RunEnd:
     end, changes = RunEnd("error", "the run was interrupted", cut=True), _Changes(run)
     try:
         end = _loop(run, changes)
-    except KeyboardInterrupt:
-        end = RunEnd("safe_hold", "interrupted by the operator", cut=True)
+    except KeyboardInterrupt as interrupt:
+        end = interrupted(interrupt)
     except Exception as defect:
         end = ended_by(defect)
     finally:
@@ -73,6 +76,11 @@ def execute(run: Run) -> RunEnd:
 def ended_by(defect: BaseException) -> RunEnd:
     """The end of a run that a defect cut short."""
     return RunEnd("error", _one_line(defect), defect, cut=True)
+
+
+def interrupted(interrupt: KeyboardInterrupt) -> RunEnd:
+    """The end of a run that a signal cut short."""
+    return RunEnd("safe_hold", words_of(interrupt), cut=True, signal=number_of(interrupt))
 
 
 def _loop(run: Run, changes: _Changes) -> RunEnd:

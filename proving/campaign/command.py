@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from executive.cli.command_group import CommandGroup
+from executive.core.interrupts import number_of
 
 if TYPE_CHECKING:
     from proving.campaign.cases import Campaign
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from proving.campaign.tally import Ended
 
 PATH = click.Path(path_type=Path)
-INTERRUPTED = 1
 
 
 class _CampaignGroup(CommandGroup):
@@ -141,9 +141,9 @@ def _resumable(folder: CampaignFolder, command: str) -> Iterator[None]:
     """Says how to go on when interrupted."""
     try:
         yield
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         click.echo(f"interrupted; to go on: {command} --resume", err=True)
-        raise click.exceptions.Exit(INTERRUPTED) from None
+        raise click.exceptions.Exit(128 + number_of(interrupt)) from None
     finally:
         folder.close()
 

@@ -61,6 +61,7 @@ def minimise(
 
     Deterministic; no scenario is run twice, and none after `most` runs. ConfigError for bad input.
     """
+    require_sound(source / "record.mcap")
     file = source / "scenario.yaml" if source.is_dir() else source
     before: Data = yaml.safe_load(resolve_scenario(file, seed, tier).dump())
     with TemporaryDirectory(prefix="minimise-") as folder, ForkServer() as server:
