@@ -71,7 +71,7 @@ class Scope:
         return Constant(None if port.default is REQUIRED else port.default)
 
     def typed(self, name: str, kind: ValueType[Any]) -> Binding:
-        """The place of the value of this name and type, here or around; a constant None where there is none."""
+        """The place of the value of this name and type, here or around; else a constant None."""
         known = self.types.get(name)
         if known is not None and known.name == kind.name:
             return self.binding(name)
