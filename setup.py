@@ -10,18 +10,21 @@ from __future__ import annotations
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-DATA = ("trees", "missions", "scenarios", "campaigns")
+DATA = ("trees", "missions", "scenarios", "campaigns", "templates")
+TEMPLATES = ("**/*.py", "**/*.md", "**/*.ini", "**/gitignore")  # of `longarm init`; they are copied, not run
 
 
 class WithData(build_py):
-    """Adds each folder of data as a package `longarm.data.<folder>`, made of YAML files alone."""
+    """Adds each folder of data as a package `longarm.data.<folder>`: YAML files, and all of a template."""
 
     def finalize_options(self) -> None:
         super().finalize_options()
         packed = {f"longarm.data.{folder}": folder for folder in DATA}
         self.packages = [*(self.packages or []), *packed]
         self.package_dir = {**self.package_dir, **packed}
-        self.package_data = {**self.package_data, **{name: ["**/*.yaml"] for name in packed}}
+        files = {name: ["**/*.yaml"] for name in packed}
+        files["longarm.data.templates"] += TEMPLATES
+        self.package_data = {**self.package_data, **files}
 
 
 setup(cmdclass={"build_py": WithData})

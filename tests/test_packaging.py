@@ -64,8 +64,11 @@ def test_the_wheel_packs_data_under_one_name(tmp_path):
     built = tmp_path / "lib"
     for folder in DATA:
         assert not (built / folder).exists()
-        assert yaml_files(built / "longarm" / "data" / folder) == yaml_files(ROOT / folder) != set()
+        assert files(built / "longarm" / "data" / folder, "*.yaml") == files(ROOT / folder, "*.yaml") != set()
+    packed, template = (at / "templates" for at in (built / "longarm" / "data", ROOT))
+    assert files(packed) == files(template)
 
 
-def yaml_files(folder):
-    return {path.relative_to(folder) for path in folder.rglob("*.yaml")}
+def files(folder, pattern="*"):
+    found = (path for path in folder.rglob(pattern) if path.is_file() and path.suffix != ".pyc")
+    return {path.relative_to(folder) for path in found}

@@ -64,6 +64,8 @@ def invoke(arguments: list[str]) -> int:
 
 def _project(arguments: list[str]) -> Project | None:
     """The project of the first file or folder that the command line names, else of the working folder."""
+    if arguments[:1] == ["init"]:
+        return None  # it reads what it has written itself; what lies there before may be anything
     named = next((Path(a) for a in arguments if not a.startswith("-") and Path(a).exists()), Path.cwd())
     if all(project_file(at) is None for at in (named, Path.cwd())):
         return None  # without reading one there is nothing to import
@@ -277,6 +279,29 @@ def import_(file: Path, output: Path, force: bool) -> int:
         click.echo(path)
     for note in imported.notes:
         click.echo(f"{note.file}:{note.line}:{note.column}: note: {note.message}", err=True)
+    return 0
+
+
+@cli.command()
+@click.argument("folder", metavar="DIR", type=FILE)
+@click.option("--force", is_flag=True, help="Write into a folder that is not empty; replace files.")
+@click.option("--schemas", is_flag=True, help="Only the editor's schemas of a project that is there, anew.")
+def init(folder: Path, force: bool, schemas: bool) -> int:
+    """Write a project that runs: a tree, a leaf, a strategy, a mission, a scenario, tests, editor settings.
+
+    Example: longarm init my_rover
+    """
+    from executive.cli import starting
+
+    if schemas:
+        starting.refuse_unless_project(folder)
+        files = starting.write_editor_files(folder)
+    else:
+        files = starting.write_project(folder, force)
+    for file in files:
+        click.echo(folder / file)
+    if not schemas:
+        click.echo(starting.next_commands(folder), nl=False)
     return 0
 
 
