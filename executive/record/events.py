@@ -184,6 +184,24 @@ class FaultEvent:
 
 
 @dataclass(frozen=True)
+class Placed:
+    """Something that lies in the world, as a circle in `site` [m]; `kind` is such as `rock` or `soil`."""
+
+    kind: str
+    x_m: float
+    y_m: float
+    radius_m: float
+
+
+@dataclass(frozen=True)
+class PlacedEvent:
+    """What an injected fault has lying in the world from now on; nothing once it has taken it away again."""
+
+    name: str
+    things: tuple[Placed, ...]
+
+
+@dataclass(frozen=True)
 class ImageEvent:
     """A small picture of what camera `left` or `right` saw; `format` is png or jpeg."""
 

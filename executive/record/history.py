@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar, cast
 
@@ -41,11 +42,11 @@ class History:
         return cls({}, complete=False)
 
     @classmethod
-    def holding(cls, events: list[At[T]]) -> History:
-        """A history of these events of one type, and nothing else."""
+    def holding(cls, events: Sequence[At[Any]]) -> History:
+        """A history of these events, and nothing else; each type in order of time."""
         made = cls({})
-        if events:
-            made._decoded[type(events[0].event)] = list(events)
+        for at in sorted(events, key=lambda at: at.time_s):
+            made._decoded.setdefault(type(at.event), []).append(at)
         return made
 
     def all(self, event: type[T]) -> list[At[T]]:
@@ -62,7 +63,9 @@ class History:
     @property
     def end_s(self) -> float:
         """Mission time of the last message [s], 0 for an empty record."""
-        return max((of_topic[-1].time_s for of_topic in self._messages.values() if of_topic), default=0.0)
+        messages = [of_topic[-1].time_s for of_topic in self._messages.values() if of_topic]
+        decoded = [of_type[-1].time_s for of_type in self._decoded.values() if of_type]
+        return max([*messages, *decoded], default=0.0)
 
     def _decode(self, event: type[T]) -> list[At[T]]:
         found = []

@@ -90,6 +90,7 @@ RECORD: tuple[Topic, ...] = (
     _own("/terrain", events.TerrainEvent),
     _own("/fault_armed", events.FaultArmedEvent),
     _own("/fault", events.FaultEvent),
+    _own("/placed", events.PlacedEvent),
     _fox("/log", events.LogEvent, Log, foxglove.log_message, foxglove.log_event),
 )
 TRUTH: tuple[Topic, ...] = (

@@ -133,7 +133,7 @@ def timed(time: Scale, top: float, bottom: float) -> dict[str, object]:
 
 
 def legend(entries: Iterable[tuple[str, str, str]]) -> str:
-    """An HTML legend of (kind, colour, words); kind is line, dash, dot, ring, area or mark."""
+    """An HTML legend of (kind, colour, words); kind is line, dash, dot, ring, area, mark or warn."""
     return (
         "<ul class='legend'>"
         + "".join(f"<li>{_swatch(kind, colour)}{words}</li>" for kind, colour, words in entries)
@@ -149,6 +149,7 @@ def _swatch(kind: str, colour: str) -> str:
         "ring": svg.element("circle", cx=11, cy=6, r=4.5, fill="none", stroke=colour, stroke_width=1.6),
         "area": svg.element("rect", x=1, y=1, width=20, height=10, rx=1.5, fill=colour, fill_opacity=0.45),
         "solid": svg.element("rect", x=1, y=1, width=20, height=10, rx=1.5, fill=colour),
+        "warn": svg.polygon([(5, 1), (17, 1), (11, 12)], fill=colour),
         "mark": svg.polygon([(11, 0), (17, 6), (11, 12), (5, 6)], fill=colour),
     }
     return svg.element("svg", shapes[kind], width=22, height=12, viewBox="0 0 22 12", aria_hidden="true")

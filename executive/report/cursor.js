@@ -10,6 +10,7 @@
     line.setAttribute("y1", chart.dataset.y0);
     line.setAttribute("y2", chart.dataset.y1);
     line.setAttribute("visibility", "hidden");
+    line.setAttribute("vector-effect", "non-scaling-stroke");
     chart.cursor = line;
     chart.append(line);
     chart.addEventListener("pointermove", (event) => show(timeAt(chart, event)));
@@ -40,6 +41,21 @@
     const [, x, y] = places[low], d = map.dataset;
     here.setAttribute("cx", +d.x0 + x * d.px);
     here.setAttribute("cy", d.y0 - y * d.px);
+  }
+  const find = document.getElementById("find-lane");
+  if (find) {
+    const groups = [...document.querySelectorAll(".lanes .group")].map((group) => [group, group.open]);
+    find.parentElement.hidden = false;
+    find.addEventListener("input", () => {
+      const words = find.value.toLowerCase().split(/\s+/).filter(Boolean);
+      const holds = (lane) => words.every((word) => lane.dataset.find.includes(word));
+      for (const [group, open] of groups) {
+        const lanes = [...group.querySelectorAll("div.lane[data-find]")];
+        for (const lane of lanes) lane.hidden = !holds(lane);
+        group.hidden = !lanes.some(holds);
+        group.open = words.length ? !group.hidden : open;
+      }
+    });
   }
   addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((d) => (d.open = true)));
 })();

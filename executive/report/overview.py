@@ -8,7 +8,7 @@ import numpy as np
 
 from executive.core.types import PoseEstimate
 from executive.record.events import StrategyEvent, Verdict
-from executive.report import layers, palette, svg
+from executive.report import injected, layers, palette, svg
 from executive.report.axes import legend
 from executive.report.figure import Figure
 from executive.report.frame import MapFrame, corridor
@@ -23,6 +23,7 @@ def overview(run: Run) -> Figure | None:
     xy = [p for s in run.segments for p in corridor(s, s.off_track_m)] + [
         (p.x_m, p.y_m) for p in run.estimates
     ]
+    xy += injected.places(run)
     if not xy:
         return None
     frame = MapFrame.around(np.array([*xy, (0.0, 0.0)]), _WIDTH - _LEFT, 0.22, (300.0, 660.0))
@@ -38,6 +39,7 @@ def overview(run: Run) -> Figure | None:
         layers.ground(run, frame),
         _views(run, frame),
         layers.plan(run, frame),
+        injected.things(run, frame),
         layers.zones(run, frame),
         _rovers(run, frame),
         layers.believed_track(run, frame),
@@ -45,6 +47,7 @@ def overview(run: Run) -> Figure | None:
         layers.fixes(run, frame, 2.0 * factor, 1.8),
         _waypoints(run, frame),
         _strategies(run, frame),
+        injected.onsets(run, frame),
         _lander(frame),
         layers.scale_bar(frame, bar_x, frame.height_px - 16),
     ]
@@ -77,6 +80,10 @@ def _legend(run: Run, factor: int) -> list[tuple[str, str, str]]:
         ("ring", palette.FIX, f"localisation, 2σ{scaled}"),
         ("mark", palette.STRATEGY, "strategy"),
     ]
+    if run.result.faults:
+        entries.append(("warn", palette.FAULT, "injected fault"))
+    if injected.stays(run):
+        entries.append(("ring", palette.FAULT, "put into the world by a fault"))
     if run.track is not None:
         entries.insert(3, ("line", palette.TRUTH, "true track"))
     return entries
@@ -98,7 +105,8 @@ def _caption(run: Run, factor: int) -> str:
         "The site from above, x to the right and y up, in metres from the foot of the mast. "
         f"{truth}the dashed blue line is what it believed between localisations.{scaled} "
         "Grey rays lead from the head to each place where it looked. Numbers are way-points, "
-        "diamonds with letters the strategies of the table below. The rover is drawn to scale at its start "
+        "diamonds with letters the strategies and triangles with numbers the injected faults of the tables "
+        "below, each where the rover was then. The rover is drawn to scale at its start "
         "and its end."
     )
 

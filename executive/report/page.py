@@ -14,6 +14,7 @@ from markupsafe import Markup
 from executive.core.files import write_whole
 from executive.record.events import Start
 from executive.report.cross_track import cross_track_figure
+from executive.report.explain.sentence import sentence
 from executive.report.figure import Figure
 from executive.report.gather import Run, gather
 from executive.report.insets import insets
@@ -67,6 +68,7 @@ def render(run: Run, tree_svg: str | None = None) -> str:
         name=run.result.scenario or run.folder.name,
         outcome=outcome.replace("_", " "),
         tone=tone_of(outcome),
+        sentence=sentence(run.history) if run.history.end_s else None,
         reason=run.result.reason,
         missing=[*run.missing, *absent],
         tiles=tiles(run.result),

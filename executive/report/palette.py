@@ -1,10 +1,10 @@
-"""One restrained palette for every figure of a report."""
+"""One restrained palette for every figure of a report; ink follows the page, which may be light or dark."""
 
-INK = "#20262d"
+INK = "var(--ink, #20262d)"
 MUTED = "#66707a"
 GRID = "#e3e6e8"
 PAPER = "#ffffff"
-TRUTH = "#20262d"
+TRUTH = INK
 ESTIMATE = "#2a6fb5"
 FIX = "#d9661f"
 ON_TRACK = "#3f8f6b"

@@ -74,7 +74,7 @@ def short_names(paths: list[str]) -> dict[str, str]:
 
     Composites that carry only their type's name tell nothing, so trees and named nodes stand for them.
     """
-    telling = {path: _telling(path.split("/")) for path in paths}
+    telling = {path: telling_parts(path.split("/")) for path in paths}
     names: dict[str, str] = {}
     for path, parts in telling.items():
         for n in range(1, len(parts) + 1):
@@ -85,7 +85,7 @@ def short_names(paths: list[str]) -> dict[str, str]:
     return names
 
 
-def _telling(parts: list[str]) -> list[str]:
+def telling_parts(parts: list[str]) -> list[str]:
     """The steps that tell something: what is done for each of several tells itself from what is done once."""
     silent = {name for name, kind in control_types().items() if not kind.names_an_item}
     kept = [part for part in parts[:-1] if part.split("#")[0] not in silent]

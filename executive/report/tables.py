@@ -11,6 +11,7 @@ from executive.record.result import waypoint_error_m
 from executive.record.rows import JudgedRow, worst_first
 from executive.report.figure import duration, millimetres
 from executive.report.gather import Run
+from executive.report.injected import numbers
 from executive.report.overview import letter
 
 
@@ -76,8 +77,10 @@ FAULT_STAGES = ("armed", "on", "observable", "detected", "isolated", "recovered"
 
 
 def faults(run: Run) -> Table:
+    number = numbers(run)
     rows = tuple(
         (
+            number[row.name],
             row.name,
             *(_time(getattr(row, f"t_{stage}_s")) for stage in FAULT_STAGES),
             row.hypothesis or "–",
@@ -89,7 +92,7 @@ def faults(run: Run) -> Table:
         "Armed when its onset came, fired when it altered something; the run is invalid where it never did."
     )
     stages = ("armed", "fired", "observable", "detected", "isolated", "recovered", "ended")
-    header = ("fault", *stages, "concluded", "expected")
+    header = ("", "fault", *stages, "concluded", "expected")
     return Table("faults", "Injected faults", header, rows, note if rows else "")
 
 

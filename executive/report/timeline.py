@@ -1,4 +1,4 @@
-"""Who did what when: leaves, strategies, faults, and the weights of the hypotheses, on one time axis."""
+"""Who did what when: leaves, strategies, faults, and the weights of the hypotheses, over mission time."""
 
 from __future__ import annotations
 
@@ -11,34 +11,31 @@ from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, thinned, time_axis, timed
 from executive.report.figure import Figure, duration
 from executive.report.gather import Run
-from executive.report.spans import Span, fault_spans, leaf_spans, short_names, strategy_spans
+from executive.report.lanes import Group, Lane, drawn
+from executive.report.spans import (
+    Span,
+    fault_spans,
+    leaf_spans,
+    short_names,
+    strategy_spans,
+    telling_parts,
+)
 
-_WIDTH, _LEFT, _ROW, _MOST_ROWS = 1100.0, 200.0, 20.0, 24
-_COLOURS = {**palette.STATUS, "strategy": palette.STRATEGY, "fault": palette.FAULT}
+_WIDTH, _LEFT = 1100.0, 200.0
+_UNFOLDED = 24
+"""The most leaves that are shown without folding."""
 
 
 def timeline(run: Run) -> Figure | None:
-    """Swimlanes of leaves, strategies and faults; None where nothing was recorded."""
-    leaves = dict(list(leaf_spans(run).items())[:_MOST_ROWS])
-    names = short_names(list(leaves))
+    """Lanes of leaves in foldable groups, of strategies and of faults; None where nothing was recorded."""
     groups = [
-        ("leaves", {names[path]: (path, spans) for path, spans in leaves.items()}),
-        ("strategies", {name: (name, spans) for name, spans in strategy_spans(run).items()}),
-        ("faults", {name: (name, spans) for name, spans in fault_spans(run).items()}),
+        *_leaves(run),
+        Group("strategies", _lanes(strategy_spans(run)), fold=False),
+        Group("faults", _lanes(fault_spans(run)), fold=False),
     ]
-    groups = [(title, rows) for title, rows in groups if rows]
+    groups = [group for group in groups if group.lanes]
     if not groups:
         return None
-    time = Scale(0.0, run.end_s, _LEFT, _WIDTH - 8)
-    body, y = [], 8.0
-    for title, rows in groups:
-        y += 16
-        body.append(svg.text(8, y - 3, title, class_="axis"))
-        for name, (path, spans) in rows.items():
-            body.append(_row(time, y, name, path, spans))
-            y += _ROW
-    grid = time_axis(time, 10, y + 2)
-    drawn = svg.drawing(_WIDTH, y + 24, [grid, *body], aria_label="Timeline", **timed(time, 10, y + 2))
     words = [
         ("solid", palette.GOOD, "ended in success"),
         ("solid", palette.BAD, "ended in failure"),
@@ -46,32 +43,34 @@ def timeline(run: Run) -> Figure | None:
         ("solid", palette.BUSY, "still under way"),
     ]
     caption = (
-        "Each row is a leaf of the tree; each block one time it ran, coloured by how it ended (hover for the "
-        "reason). Below, the strategies from choice to verdict, and the injected faults while in effect."
+        "Every leaf of the tree that was entered, in groups by the tree it stands in: each block is one time "
+        "it ran, coloured by how it ended (hover for the reason); the line of a folded group shows all "
+        "of its leaves. Below, the strategies from choice to verdict, and the faults while in effect."
     )
-    return Figure("timeline", "Timeline", legend(words) + drawn, caption)
+    return Figure("timeline", "Timeline", legend(words) + drawn(groups, run.end_s), caption)
 
 
-def _row(time: Scale, y: float, name: str, path: str, spans: list[Span]) -> str:
-    label = svg.element("g", svg.title(path), svg.text(_LEFT - 8, y + 14, name[-30:], class_="lane end"))
-    base = svg.line(time.start, y + _ROW / 2, time.end, y + _ROW / 2, class_="grid")
-    return label + base + "".join(_block(time, y, name, span) for span in spans)
+def _leaves(run: Run) -> list[Group]:
+    """The leaves, grouped by the tree or named node that they stand in; open where they fill no page."""
+    spans = leaf_spans(run)
+    names = short_names(list(spans))
+    grouped: dict[str, list[Lane]] = {}
+    for path, of_leaf in spans.items():
+        group, _, name = names[path].rpartition("/")
+        home = group or _home(path)
+        grouped.setdefault(home, []).append(Lane(name or path, path, tuple(of_leaf)))
+    unfolded = len(spans) <= _UNFOLDED
+    return [Group(home, tuple(lanes), open=unfolded) for home, lanes in grouped.items()]
 
 
-def _block(time: Scale, y: float, name: str, span: Span) -> str:
-    left, right = time.clamp(span.start_s), time.clamp(span.end_s)
-    words = f"{name}, {duration(span.start_s)} to {duration(span.end_s)}: {span.words}"
-    return svg.element(
-        "rect",
-        svg.title(words),
-        x=left,
-        y=y + 4,
-        width=max(right - left, 1.6),
-        height=_ROW - 8,
-        rx=1.5,
-        fill=_COLOURS.get(span.kind, palette.MUTED),
-        fill_opacity=0.88,
-    )
+def _home(path: str) -> str:
+    """The nearest telling node above a leaf whose own name says enough."""
+    telling = telling_parts(path.split("/"))[:-1]
+    return telling[-1] if telling else path.split("/")[0]
+
+
+def _lanes(spans: dict[str, list[Span]]) -> tuple[Lane, ...]:
+    return tuple(Lane(name, name, tuple(of_one)) for name, of_one in spans.items())
 
 
 def hypotheses(run: Run) -> Figure | None:

@@ -21,6 +21,7 @@ from executive.core.ports import Backend, Devices, Localizer
 from executive.core.registry import Kind
 from executive.isc import hypothesis_names
 from executive.pool import Strategy
+from executive.record.events import Placed
 from executive.run.instrument import TreeParts
 
 CATEGORIES = (
@@ -71,6 +72,10 @@ class Fault:
 
     def watch(self, backend: Backend) -> None:
         """Look for evidence; called once a tick while active."""
+
+    def placed(self) -> tuple[Placed, ...]:
+        """What it has lying in the world just now, for the map of the report; asked once a tick."""
+        return ()
 
     def took_effect(self) -> bool:
         """Evidence: whether anything has gone otherwise because of it since its onset."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,6 +14,8 @@ from executive.run import Context, Cue, Fault, Instrument, TreeParts
 from proving.inject.entries import ResolvedFault
 from proving.inject.onsets import Onset, Sightings
 from proving.inject.profiles import Shape
+
+SEEN_M = 0.02  # what has moved by less is not written again
 
 
 @dataclass
@@ -36,6 +39,7 @@ class Injection:
     shape: Shape
     level: Level
     since_s: float | None = None
+    placed: tuple[events.Placed, ...] = ()
     fired: bool = False
     over: bool = False
 
@@ -116,6 +120,7 @@ class FaultSchedule(Instrument):
         if level > 0.0:
             injection.fault.watch(self._backend)
             self._note_effect(injection)
+        self._note_places(injection)
         if injection.over and injection.fired:
             self._write(events.FaultEvent(injection.plan.name, False, injection.plan.spec.hypothesis))
 
@@ -123,3 +128,17 @@ class FaultSchedule(Instrument):
         if injection.since_s is not None and not injection.fired and injection.fault.took_effect():
             injection.fired = True
             self._write(events.FaultEvent(injection.plan.name, True, injection.plan.spec.hypothesis))
+
+    def _note_places(self, injection: Injection) -> None:
+        """Write what it has placed, again once that has moved by enough to be seen on a map."""
+        placed = injection.fault.placed()
+        if _differ(placed, injection.placed):
+            injection.placed = placed
+            self._write(events.PlacedEvent(injection.plan.name, placed))
+
+
+def _differ(here: Sequence[events.Placed], there: Sequence[events.Placed]) -> bool:
+    if [(a.kind, a.radius_m) for a in here] != [(b.kind, b.radius_m) for b in there]:
+        return True
+    moved = (math.dist((a.x_m, a.y_m), (b.x_m, b.y_m)) for a, b in zip(here, there, strict=True))
+    return any(distance_m >= SEEN_M for distance_m in moved)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Generic, TypeVar
 from pydantic import Field
 
 from executive.core.units import Length, Speed
+from executive.record.events import Placed
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
@@ -71,10 +72,22 @@ R = TypeVar("R", bound=Parameters)
 class _RockFault(WorldFault[R], Generic[R]):
     """Puts one rock somewhere; shows once the rover touches it or a frame missed a marker for it."""
 
+    kind = "rock"
+
     def __init__(self, parameters: R) -> None:
         super().__init__(parameters)
         self.rock: Rock | None = None
         self._frames = 0
+
+    def placed(self) -> tuple[Placed, ...]:
+        if self.rock is None:
+            return ()
+        x, y, _ = self.rock.centre_site_m
+        return (Placed(self.kind, x, y, self.drawn_m(self.rock)),)
+
+    def drawn_m(self, rock: Rock) -> float:
+        """How large it is on a map."""
+        return rock.radius_m
 
     def shows(self, sim: WorldFaults, done: Tally) -> bool:
         if self.rock is None:
@@ -143,6 +156,11 @@ class CabinGrounding(_RockFault[BellyStone]):
 
 class WrongElevationModel(_RockFault[Rise]):
     """The ground ahead is higher than the model of it says: a smooth rise, the cap of a large sphere."""
+
+    kind = "rise"
+
+    def drawn_m(self, rock: Rock) -> float:
+        return self.p.radius
 
     def act(self, sim: WorldFaults, level: float) -> None:
         if self.rock is None and level > 0.0:

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from executive.core.types import Vec2
 from executive.core.units import Fraction, Length
+from executive.record.events import Placed
 from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.soil import Patch, Soil
 
@@ -97,6 +98,9 @@ class _PatchFault(WorldFault[D], Generic[D]):
         self._patch = Patch(at, self.p.radius, self.soil(sim.soil_at(at), level))
         sim.add_soil(self._patch)
         self._driven_m = sim.tally().driven_m
+
+    def placed(self) -> tuple[Placed, ...]:
+        return () if self._patch is None else (Placed("soil", *self._patch.at_site_m, self._patch.radius_m),)
 
     def soil(self, here: Soil, level: float) -> Soil:
         raise TypeError(f"{type(self).__name__} lays no soil")

@@ -13,6 +13,7 @@ from executive.core.units import (
     Fraction,
     Length,
 )
+from executive.record.events import Placed
 from sim_pybullet.faults.base import Nothing, Parameters, WorldFault, spec
 from sim_pybullet.lay import Bend
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 PULL_N = 0.15  # three times the drag of a free spool
 DRIVEN_M = 0.01
+SNAG_DRAWN_M = 0.05  # how large the map shows what the tether is caught at
 
 
 class Snag(Parameters):
@@ -63,25 +65,36 @@ class _Pulling:
         return sim.world.tether.tension_n > PULL_N
 
 
-class TetherSnag(_Pulling, WorldFault[Snag]):
+class _Bending(_Pulling):
+    """The same, with the place where the tether bends."""
+
+    bend: Bend | None = None
+
+    def placed(self) -> tuple[Placed, ...]:
+        return () if self.bend is None else (Placed("snag", *self.bend.at_site_m[:2], SNAG_DRAWN_M),)
+
+
+class TetherSnag(_Bending, WorldFault[Snag]):
     """The tether is caught behind the rover: it pays out no more and pulls the harder the farther it goes."""
 
     def act(self, sim: WorldFaults, level: float) -> None:
         at = sim.on_the_tether(self.p.behind)
         stiffness_n_m, tether = self.p.pull / self.p.give, sim.world.tether
-        tether.bend = Bend(at, 1.0, True, stiffness_n_m, self.p.felt) if level else None
+        self.bend = Bend(at, 1.0, True, stiffness_n_m, self.p.felt) if level else None
+        tether.bend = self.bend
         tether.length_m = max(tether.length_m, tether.way_m(sim.world.anchor()))  # no pull from nowhere
         sim.world.wake()
 
 
-class TetherCapstan(_Pulling, WorldFault[Wrap]):
+class TetherCapstan(_Bending, WorldFault[Wrap]):
     """The tether drags round a rock: the pull grows by e^(friction x angle), unfelt at the spool."""
 
     def act(self, sim: WorldFaults, level: float) -> None:
         capstan = math.exp(self.p.friction * self.p.angle * level)
         tether = sim.world.tether
         at = tether.bend.at_site_m if tether.bend else sim.on_the_tether(self.p.behind)
-        tether.bend = Bend(at, capstan) if level else None
+        self.bend = Bend(at, capstan) if level else None
+        tether.bend = self.bend
         sim.world.wake()
 
 

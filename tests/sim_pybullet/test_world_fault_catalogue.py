@@ -168,6 +168,9 @@ def _state(bench: Bench) -> Any:
 def test_a_rock_on_the_path_shows_once_it_is_met(tier: str, bench_of: Callable[..., Bench]) -> None:
     bench = bench_of("rock_on_path", tier, ahead="300 mm", radius="80 mm")
     bench.set_level(1.0)
+    (placed,) = bench.fault.placed()
+    assert (placed.kind, placed.radius_m) == ("rock", 0.08)
+    assert (placed.x_m, placed.y_m) == pytest.approx((3.3, 0.0), abs=0.01)
     bench.drive(0.01, 0.01)
     assert not bench.fault.took_effect()
     bench.drive(0.3, 0.3)

@@ -25,10 +25,11 @@ from executive.record.history import At
 from executive.record.result import strategy_rows
 from executive.record.run_result import FaultStages, StrategyRow
 from executive.report.explain.chain import Chain, Link, Moment
+from executive.report.explain.sentence import POOL, sentence
 
 T = TypeVar("T")
 _MOST_COMMANDS = 6
-_POOL = "pool"
+_HEAD = ("scenario", "seed", "sentence", "outcome", "reason", "at_s", "end_s")
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class Explanation:
 
     scenario: str
     seed: int | None
+    sentence: str
     outcome: str | None
     reason: str | None
     at_s: float
@@ -56,7 +58,10 @@ class Explanation:
     def as_json(self) -> dict[str, object]:
         """Plain data for `--json`."""
         return {
-            **{key: getattr(self, key) for key in ("scenario", "seed", "outcome", "reason", "at_s", "end_s")},
+            **{
+                key: getattr(self, key)
+                for key in ("scenario", "seed", "sentence", "outcome", "reason", "at_s", "end_s")
+            },
             "chain": [_link(link) for link in self.chain],
             "failure": [_link(link) for link in self.failure],
             "pose": None if self.pose is None else _pose(self.pose),
@@ -93,12 +98,13 @@ def explain(folder: Path, at: str | None = None) -> Explanation:
     moment = Moment(history.all(NodeChange), at_s)
     chain = moment.chain()
     strategies = _until(history, StrategyEvent, at_s)
-    refused = [At(t, e.message) for t, e in _until(history, LogEvent, at_s) if e.name == _POOL]
+    refused = [At(t, e.message) for t, e in _until(history, LogEvent, at_s) if e.name == POOL]
     weighed = _until(history, HypothesesEvent, at_s)
     poses = [e for _, e in _until(history, PoseEstimate, at_s) if e.source != PoseSource.TREND]
     return Explanation(
         scenario=start.event.scenario if start else folder.name,
         seed=start.event.seed if start else None,
+        sentence=sentence(history, at_s),
         outcome=stop.event.outcome if stop else None,
         reason=stop.event.reason if stop else None,
         at_s=at_s,

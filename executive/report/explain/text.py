@@ -46,6 +46,7 @@ def _head(found: Explanation) -> Iterator[str]:
     seed = "" if found.seed is None else f", seed {found.seed}"
     end = found.outcome or "the record was cut off"
     yield f"{found.scenario}{seed}: {end} after {_t(found.end_s).strip()}"
+    yield f"  {found.sentence}".replace("\u00a0", " ")
     if found.reason:
         yield f"  {found.reason}"
     yield f"At {_t(found.at_s).strip()} of mission time ({found.at_s:g} s)" + _place(found)
