@@ -40,8 +40,11 @@ def replay(run_dir: Path, out: Path | None, as_json: bool) -> int:
 
     Example: longarm replay runs/first_traverse-7
     """
+    from executive.run.kept_files import changes
     from proving.engine import Limits
 
+    for words in () if as_json else changes(run_dir):
+        click.echo(f"changed since: {words}", err=True)
     return tell(str(run_dir), compare(run_dir, out, Limits()), as_json)
 
 

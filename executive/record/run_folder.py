@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import shutil
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -59,6 +60,7 @@ def write_traceback(folder: Path, defect: BaseException) -> None:
 def unwrite(folder: Path, made: bool) -> None:
     for name in RUN_FILES:
         (folder / name).unlink(missing_ok=True)
+    shutil.rmtree(folder / "files", ignore_errors=True)
     if made and not any(folder.iterdir()):
         folder.rmdir()
 

@@ -35,6 +35,7 @@ from executive.report import write_report
 from executive.report.show import draw
 from executive.run.assembly import TICK_S, set_up, write_start
 from executive.run.judging import exit_code, judged
+from executive.run.kept_files import keep_files
 from executive.run.progress import progress_bar
 from executive.run.resolve import resolve_scenario
 from executive.run.resolved import ResolvedScenario
@@ -105,10 +106,11 @@ def _written(
     """The run, written into a folder that is this process's own; `made` for it."""
     for stale in RUN_FILES:
         (folder / stale).unlink(missing_ok=True)
-    write_whole(folder / "scenario.yaml", scenario.dump())  # first, so that a run cut off can be repeated
+    text = keep_files(scenario, folder)
+    write_whole(folder / "scenario.yaml", text)  # first, so that a run cut off can be repeated
     try:
         with one_thread():
-            end = _execute(scenario, strategies, folder, watch, options.bar)
+            end = _execute(scenario, strategies, folder, text, watch, options.bar)
     except LongarmError:
         unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
         raise
@@ -142,6 +144,7 @@ def _execute(
     scenario: ResolvedScenario,
     strategies: tuple[Strategy, ...],
     folder: Path,
+    text: str,
     watch: Stopwatch,
     bar: bool,
 ) -> RunEnd:
@@ -157,7 +160,7 @@ def _execute(
     )
     with Recorder(folder / "record.mcap") as recorder:
         try:
-            write_start(recorder, scenario)
+            write_start(recorder, scenario, text)
             with progress_bar(scenario.name, route, bar) as listeners:
                 prepared = set_up(scenario, strategies, request, recorder, watch, listeners)
                 end = execute(prepared)

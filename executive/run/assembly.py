@@ -53,8 +53,9 @@ def prior_pose(first: Segment) -> PoseEstimate:
     )
 
 
-def write_start(recorder: Recorder, scenario: ResolvedScenario) -> None:
-    start = events.Start(scenario.name, scenario.dump(), scenario.seed, TICK_S, scenario.tier, versions())
+def write_start(recorder: Recorder, scenario: ResolvedScenario, text: str) -> None:
+    """How the run began; `text` is the scenario as the run folder has it."""
+    start = events.Start(scenario.name, text, scenario.seed, TICK_S, scenario.tier, versions())
     recorder.write(start, 0.0)
     recorder.write(events.RouteEvent(scenario.mission.route()), 0.0)
     for broken in broken_strategies():

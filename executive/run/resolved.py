@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Any, TypeVar, cast
 
 import yaml
@@ -85,8 +86,11 @@ class ResolvedScenario:
         """What an instrument has read of its keys; KeyError where it is not registered."""
         return cast("S", self.settings[spec.name])
 
-    def dump(self) -> str:
-        """YAML with every default written; resolves to an equal value, bit for bit."""
+    def dump(self, kept: Mapping[str, str] = MappingProxyType({})) -> str:
+        """YAML with every default written; resolves to an equal value, bit for bit.
+
+        A path that is among `kept` is written as what that gives for it.
+        """
         data = self.file.model_dump(mode="json", by_alias=True, exclude_none=True)
         data["localizer"] = self.localizer.entry()
         data["world"] = self.world.model_dump(mode="json", by_alias=True, exclude_none=True)
@@ -97,7 +101,17 @@ class ResolvedScenario:
         for spec in instruments:
             data |= spec.dump(self.of(spec))
         data["time_limit"] = time_limit
+        data |= {key: _moved(data[key], kept) for key in ("project", "mission", "world") if key in data}
         return yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=110)
+
+
+def _moved(data: Any, kept: Mapping[str, str]) -> Any:
+    """Plain data with every path among `kept` replaced."""
+    if isinstance(data, dict):
+        return {key: _moved(value, kept) for key, value in data.items()}
+    if isinstance(data, list):
+        return [_moved(value, kept) for value in data]
+    return kept.get(data, data) if isinstance(data, str) else data
 
 
 class _Dumper(yaml.SafeDumper):

@@ -1,0 +1,125 @@
+"""The files that a run used, kept in its folder: enough to repeat it anywhere, and to say what has changed.
+
+`files/` holds a copy of each file of the user's own in the same places relative to each other, so that they find
+each other there as they did; `files/installed/` holds what came with Longarm or a plug-in, for comparison only.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from executive.config.find import INSTALLED
+from executive.core.files import write_whole
+from executive.core.registry import in_project
+from executive.run.resolved import ResolvedScenario
+from executive.tree.spec import TreeSpec, walk
+from executive.tree.strategies import load_strategies, strategy_trees
+
+FILES, MANIFEST, BESIDE = "files", "manifest.json", "installed"
+MOST_BYTES = 8 * 2**20
+"""A larger file is not copied; its hash alone is kept."""
+
+
+def keep_files(scenario: ResolvedScenario, folder: Path) -> str:
+    """Copy what the scenario uses into `folder/files`; the scenario's text, which refers to the copies.
+
+    Wherever the files lie, the text is the same: it is part of the record.
+    """
+    target = folder / FILES
+    shutil.rmtree(target, ignore_errors=True)
+    used = dict(_used(scenario))
+    own = [path for path in used if not path.is_relative_to(INSTALLED) and _is_small(path)]
+    root = Path(os.path.commonpath([path.parent for path in own])) if own else Path()
+    listing, kept = [], {}
+    for path, role in used.items():
+        copied = None
+        if path in own:
+            copied = f"{FILES}/{path.relative_to(root).as_posix()}"
+            kept[str(path)] = copied
+        elif path.is_relative_to(INSTALLED) and _is_small(path):
+            copied = f"{FILES}/{BESIDE}/{path.relative_to(INSTALLED).as_posix()}"
+        if copied is not None:
+            (folder / copied).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, folder / copied)
+        listing.append(_entry(path, role, copied))
+    for path in scenario.project.paths if scenario.project else ():
+        if path.is_relative_to(root):  # a folder that the project file names must be there
+            (target / path.relative_to(root)).mkdir(parents=True, exist_ok=True)
+    if listing:
+        target.mkdir(parents=True, exist_ok=True)
+        write_whole(target / MANIFEST, json.dumps({"files": listing}, indent=1) + "\n")
+    return scenario.dump(kept)
+
+
+def changes(folder: Path) -> tuple[str, ...]:
+    """What has become of the files that a run used, each in a few words: `tree trek_to.yaml: line 14`."""
+    try:
+        listing = json.loads((folder / FILES / MANIFEST).read_text())["files"]
+        return tuple(words for entry in listing if (words := _changed(folder, entry)))
+    except (OSError, ValueError, KeyError, TypeError):
+        return ()
+
+
+def _used(scenario: ResolvedScenario) -> Iterator[tuple[Path, str]]:
+    """Every file with its role; a path twice is one file."""
+    if scenario.project is not None:
+        yield scenario.project.file, "project file"
+        yield from ((plugin, "plug-in") for plugin in scenario.project.plugins)
+    with in_project(scenario.project):
+        trees = [scenario.tree, *strategy_trees(load_strategies(), scenario.instead).values()]
+    for tree in trees:
+        yield from ((path, "tree") for path in _files_of(tree))
+    yield from ((path, "data") for path in _paths_in(scenario.world.model_dump(mode="json")))
+
+
+def _files_of(tree: TreeSpec) -> Iterator[Path]:
+    names = dict.fromkeys([tree.file, *(node.tree.file for _, node in walk(tree) if node.tree)])
+    yield from (path for name in names if (path := Path(name).absolute()).is_file())
+
+
+def _paths_in(data: Any) -> Iterator[Path]:
+    """Every absolute path of a file in plain data."""
+    if isinstance(data, Mapping):
+        data = list(data.values())
+    if isinstance(data, list | tuple):
+        for each in data:
+            yield from _paths_in(each)
+    elif isinstance(data, str) and os.path.isabs(data) and Path(data).is_file():
+        yield Path(data)
+
+
+def _is_small(path: Path) -> bool:
+    return path.stat().st_size <= MOST_BYTES
+
+
+def _entry(path: Path, role: str, copied: str | None) -> dict[str, object]:
+    content = path.read_bytes()
+    return {
+        "role": role,
+        "name": path.name,
+        "from": str(path),
+        "copy": copied,
+        "bytes": len(content),
+        "sha256": hashlib.sha256(content).hexdigest(),
+    }
+
+
+def _changed(folder: Path, entry: Mapping[str, Any]) -> str:
+    """How today's file differs from the one used; nothing where it does not, or is gone."""
+    today, what = Path(entry["from"]), f"{entry['role']} {entry['name']}"
+    if not today.is_file() or hashlib.sha256(today.read_bytes()).hexdigest() == entry["sha256"]:
+        return ""
+    if entry["copy"] is None or entry["role"] == "data":
+        return f"{what}: it is another file"
+    then = (folder / entry["copy"]).read_text(errors="replace").splitlines()
+    now = today.read_text(errors="replace").splitlines()
+    same = next(
+        (i for i, (a, b) in enumerate(zip(then, now, strict=False)) if a != b), min(len(then), len(now))
+    )
+    return f"{what}: line {same + 1}"
