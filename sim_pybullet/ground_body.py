@@ -8,6 +8,7 @@ from sim_pybullet.bullet import pybullet
 from sim_pybullet.scene import Rock
 from sim_pybullet.terrain import Terrain
 
+LANDER_RADIUS_M, LANDER_HEIGHT_M = 0.35, 0.4
 GROUND_FRICTION = 1.0  # Bullet multiplies the two frictions of a contact; the soil's value sits on the tracks
 
 
@@ -34,6 +35,17 @@ def add_rock(client: int, rock: Rock) -> int:
     """A rock as a static sphere; returns its body."""
     shape = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=rock.radius_m, physicsClientId=client)
     return _static(client, shape, list(rock.centre_site_m))
+
+
+def add_lander(client: int) -> int:
+    """The lander's body at the mast's foot, as a static cylinder; returns its body.
+
+    It lies below every line of sight of the head to where the rover may be.
+    """
+    shape = pybullet.createCollisionShape(
+        pybullet.GEOM_CYLINDER, radius=LANDER_RADIUS_M, height=LANDER_HEIGHT_M, physicsClientId=client
+    )
+    return _static(client, shape, [0.0, 0.0, LANDER_HEIGHT_M / 2])
 
 
 def _static(client: int, shape: int, position_site_m: list[float]) -> int:

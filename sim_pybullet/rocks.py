@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from executive.core.corridor import distance_m
 from executive.core.rig import RoverCalibration
 from executive.core.types import Segment
 from sim_pybullet.scene import Rock
@@ -35,7 +36,7 @@ def scatter(
         x, y = (float(v) for v in rng.uniform(area.low_site_m, area.high_site_m))
         radius_m = _radius(float(rng.uniform()))
         sunk_m = float(rng.uniform(*BURIED)) * radius_m
-        clear = all(_clearance(s, x, y) >= radius_m + half_diagonal_m + s.off_track_m for s in route)
+        clear = all(distance_m(s, x, y) >= radius_m + half_diagonal_m + s.off_track_m for s in route)
         if clear and math.hypot(x, y) >= LANDER_CLEARANCE_M + radius_m:
             rocks.append(Rock((x, y, terrain.height(x, y) - sunk_m), radius_m))
     return tuple(rocks)
@@ -45,13 +46,6 @@ def _radius(share: float) -> float:
     """A radius from a power law between the limits, by inverse transform of `share` in 0..1."""
     low, high = (r**-SIZE_EXPONENT for r in RADII_M)
     return float((low + share * (high - low)) ** (-1 / SIZE_EXPONENT))
-
-
-def _clearance(segment: Segment, x_m: float, y_m: float) -> float:
-    """Distance of a point from a segment [m]."""
-    offset = segment.offset(x_m, y_m)
-    beyond = max(0.0, -offset.along_m, offset.along_m - segment.length_m)
-    return math.hypot(beyond, offset.cross_m)
 
 
 def obstacle(terrain: Terrain, x_m: float, y_m: float, radius_m: float, height_m: float) -> Rock:

@@ -15,7 +15,7 @@ from executive.core.types import Array, Segment
 from sim_pybullet.bullet import pybullet
 from sim_pybullet.cabin import SimCabin
 from sim_pybullet.config import WorldConfig
-from sim_pybullet.ground_body import add_terrain
+from sim_pybullet.ground_body import add_lander, add_terrain
 from sim_pybullet.head import SimHead
 from sim_pybullet.inclinometer import SimInclinometer
 from sim_pybullet.poses import CabinChain, cabin_chain
@@ -70,6 +70,7 @@ class World:
         self._client = _connect(config.gravity)
         area = area_of(route, PHYSICS_MARGIN_M)
         add_terrain(self._client, self.terrain.crop(area.low_site_m, area.high_site_m))
+        self.lander = add_lander(self._client)
         self.rocks = RockPile(self._client, rocks)
         self.body = RoverBody(self._client, rig, *start_pose(config, self.terrain, route, rig, seed))
         mass_kg = rig.rover.rover_mass_kg + rig.rover.payload_mass_kg

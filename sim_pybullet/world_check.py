@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from pydantic import BaseModel
 
 from executive.config.backends import WorldProblem
 from executive.config.source import Place
+from executive.core.corridor import distance_m
+from executive.core.rig import RoverCalibration
 from executive.core.types import Segment, Vec2
-from sim_pybullet.config import ProceduralConfig, TerrainConfig, WorldConfig
+from sim_pybullet.config import ObstacleConfig, ProceduralConfig, TerrainConfig, WorldConfig
 from sim_pybullet.elevation_model import Window, default_lander_m, read_model, window_on
 from sim_pybullet.site import CELL_M, ROUTE_MARGIN_M
 from sim_pybullet.terrain import TerrainError, points_outside
@@ -36,7 +39,35 @@ def world_problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldP
     except TerrainError as error:
         return (WorldProblem(place, str(error)),)
     outside = points_outside(low, high, route, ROUTE_MARGIN_M)
-    return tuple(WorldProblem((), message, waypoint) for waypoint, message in outside)
+    problems = [WorldProblem((), message, waypoint) for waypoint, message in outside]
+    return (*problems, *_in_the_way(world.obstacles, route))
+
+
+def _in_the_way(obstacles: tuple[ObstacleConfig, ...], route: tuple[Segment, ...]) -> Iterator[WorldProblem]:
+    """Obstacles that a rover on its line drives into, each at the way-point that it drives to.
+
+    A warning, since what ground has not seen may be tried so; but no rover stands inside of a rock.
+    """
+    half_m = RoverCalibration().width_m / 2
+    for segment in route:
+        for number, rock in enumerate(obstacles):
+            radius_m = _radius_at_ground_m(rock)
+            spare_m = distance_m(segment, rock.at.x, rock.at.y) - radius_m - half_m
+            where = f"obstacle {number} at ({rock.at.x:.4g} m, {rock.at.y:.4g} m)"
+            if math.hypot(segment.end.x_m - rock.at.x, segment.end.y_m - rock.at.y) < radius_m:
+                told = f"got a way-point inside of {where}, which has a radius of {radius_m:.2f} m"
+                yield WorldProblem((), told, segment.index + 1)
+            elif radius_m > 0.0 and spare_m < 0.0:
+                missing = f"{-spare_m:.2f} m too near for half the rover's width of {half_m:.3g} m"
+                told = f"the way here leads through {where}: {missing}"
+                yield WorldProblem((), told, segment.index + 1, warning=True)
+
+
+def _radius_at_ground_m(rock: ObstacleConfig) -> float:
+    """How wide a sphere is where it is widest above the ground [m]; 0 if it is buried."""
+    if rock.height <= -rock.radius:
+        return 0.0
+    return rock.radius if rock.height >= 0.0 else math.sqrt(rock.radius**2 - rock.height**2)
 
 
 def _extent(terrain: TerrainConfig, window: Window) -> tuple[Vec2, Vec2]:

@@ -212,6 +212,8 @@ def explain(run_dir: Path, at: str | None, as_json: bool) -> int:
 def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
     """Analyse trees, missions, scenarios and campaigns without running them; print every problem.
 
+    Warnings alone do not count as problems: exit 0.
+
     Example: longarm check trees/*.yaml missions/*.yaml --format sarif
     """
     from executive.config.find import located
@@ -227,7 +229,7 @@ def check(files: tuple[Path, ...], form: str, as_json: bool) -> int:
         return 2
     problems = sorted({problem for file in files for problem in checking.check_file(file)})
     click.echo(checking.written(problems, "json" if as_json else form), nl=False)
-    return 1 if problems else 0
+    return 1 if any(not problem.warning for problem in problems) else 0
 
 
 @cli.command()

@@ -37,12 +37,14 @@ class BackendRequest:
 class WorldProblem:
     """Why a well-formed world cannot be made; `place` are the keys, seen from `world`, that say so.
 
-    With `waypoint` the problem is reported at that way-point of the mission instead, counted from 0.
+    With `waypoint` the problem is reported at that way-point of the mission instead, counted from 0. A
+    `warning` tells what may come of a world that can be made.
     """
 
     place: Place
     message: str
     waypoint: int | None = None
+    warning: bool = False
 
 
 def no_problems(world: BaseModel, route: tuple[Segment, ...]) -> tuple[WorldProblem, ...]:

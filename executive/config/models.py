@@ -57,9 +57,23 @@ class MissionFile(Strict):
         """The segments between consecutive way-points; segment i ends at way-point i + 1."""
         points = [Point(w.x, w.y) for w in self.waypoints]
         return tuple(
-            Segment(start, end, m.on_track, m.off_track, m.tolerance, index)
+            Segment(start, end, m.on_track, m.off_track, self.zone(index + 1), index, self.zone(index))
             for index, (start, end) in enumerate(pairwise(points))
             for m in (self.margins(index + 1),)
+        )
+
+    def zone(self, index: int) -> float:
+        """The radius in which way-point `index` counts as reached [m].
+
+        Its tolerance, or the off-track margin of the segment that begins there, where that is narrower: a
+        rover that stopped outside of it could not go on.
+        """
+        tolerance = self.margins(index).tolerance
+        following = index + 1
+        return (
+            min(tolerance, self.margins(following).off_track)
+            if following < len(self.waypoints)
+            else tolerance
         )
 
 

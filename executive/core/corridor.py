@@ -39,9 +39,11 @@ def farthest_m(pose: PoseEstimate, segment: Segment, sigmas: float) -> float:
     """How far from the segment the rover may be [m], so many standard deviations of its place allowed for.
 
     The farthest of the ellipse's ends: away from the segment, along it and across. Beside a segment that is
-    the cross-track error and the deviation across.
+    the cross-track error and the deviation across. inf for a pose that is no number.
     """
     x, y = pose.x_m, pose.y_m
+    if not (math.isfinite(x) and math.isfinite(y) and np.isfinite(pose.covariance[:2, :2]).all()):
+        return math.inf
     apart = apart_m(segment, x, y)
     along = (math.cos(segment.bearing_rad), math.sin(segment.bearing_rad))
     length = math.hypot(*apart)
@@ -64,5 +66,4 @@ def room_m(pose: PoseEstimate, segment: Segment, sigmas: float) -> float:
 
     -inf for a pose that is no number: it may be anywhere.
     """
-    room = segment.off_track_m - farthest_m(pose, segment, sigmas)
-    return room if math.isfinite(room) else -math.inf
+    return segment.off_track_m - farthest_m(pose, segment, sigmas)

@@ -12,15 +12,20 @@ class LongarmError(Exception):
 
 @dataclass(frozen=True, order=True)
 class Problem:
-    """One located complaint about an input file; `line` and `column` count from 1."""
+    """One located complaint about an input file; `line` and `column` count from 1.
+
+    A warning is no error: the file can be used, and `check` says what may come of it.
+    """
 
     file: str
     line: int
     column: int
     message: str
+    warning: bool = False
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}:{self.column}: {self.message}"
+        kind = "warning: " if self.warning else ""
+        return f"{self.file}:{self.line}:{self.column}: {kind}{self.message}"
 
 
 class ConfigError(LongarmError):

@@ -40,6 +40,7 @@ class Reason(StrEnum):
     IMPLAUSIBLE = "implausible"
     MISALIGNED = "misaligned"
     OUT_OF_REACH = "out_of_reach"
+    ARRIVAL_UNCERTAIN = "arrival_uncertain"
     TILT = "tilt"
     TETHER = "tether"
     DEVICE = "device"
@@ -96,7 +97,11 @@ class Point:
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight path segment between two way-points, with its margins (paper, section 3.1)."""
+    """A straight path segment between two way-points, with its margins (paper, section 3.1).
+
+    `tolerance_m` is of its end, `start_tolerance_m` of its start (None: the same). What lies no farther from
+    it than `off_track_m` is its corridor: `executive.core.corridor`.
+    """
 
     start: Point
     end: Point
@@ -104,6 +109,7 @@ class Segment:
     off_track_m: float
     tolerance_m: float
     index: int = 0
+    start_tolerance_m: float | None = None
 
     @property
     def length_m(self) -> float:

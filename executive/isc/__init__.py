@@ -8,6 +8,7 @@ from executive.isc.assessment import Assessment
 from executive.isc.bank import NOMINAL, Evidence, HypothesisBank, Weights
 from executive.isc.classification import Classification
 from executive.isc.comparison import Comparison, Innovation, SinceFix
+from executive.isc.doubt import Doubt
 from executive.isc.known import (
     hypothesis_names,
     known_channels,
@@ -25,6 +26,7 @@ __all__ = [
     "Classification",
     "Comparison",
     "Concern",
+    "Doubt",
     "Evidence",
     "Gaussian",
     "Hypothesis",

@@ -1,4 +1,4 @@
-"""What a fix may be: a number, made since it was asked for, and no farther than the belts carried the rover.
+"""Where a fix may be: no farther from the last one than the belts carried the rover.
 
 A fix beyond that is wrong, however sure of itself it is and however often it repeats: the head has shifted, a
 reflection was taken for the rover, a record was replayed. What the motion model expects plays no part here.
@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-
-import numpy as np
 
 from executive.core.types import PoseEstimate
 from executive.isc.attitude import wrap_rad
@@ -49,13 +47,3 @@ class Reach:
             turned, could = math.degrees(turned_rad), math.degrees(could_rad)
             return f"turned {turned:.0f} deg where the belts allow {could:.0f} deg"
         return None
-
-
-def unusable(fix: PoseEstimate, since_s: float) -> str | None:
-    """Why an estimate that was asked for at `since_s` says nothing at all; None if it may be weighed."""
-    numbers = np.array([*fix.position_site_m, *fix.quat_site_body, fix.time_s])
-    if not (np.isfinite(numbers).all() and np.isfinite(fix.covariance).all()):
-        return "the pose found is no number"
-    if fix.time_s < since_s:
-        return f"the pose found is {since_s - fix.time_s:.0f} s older than the question"
-    return None

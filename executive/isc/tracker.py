@@ -10,7 +10,9 @@ from executive.core.rig import Rig
 from executive.core.types import PoseEstimate, PoseSource
 from executive.isc import correction, prediction
 from executive.isc.comparison import SinceFix
-from executive.isc.gate import Reach, unusable
+from executive.isc.doubt import Doubt
+from executive.isc.evidence_check import EvidenceCheck
+from executive.isc.gate import Reach
 from executive.isc.motion import YAW_EFFICIENCY, MotionNoise, MotionState, start
 from executive.isc.readings import Readings, Sensed, sense
 
@@ -27,6 +29,9 @@ class Tracker:
         self._gauge_m, self._clock, self._noise = rig.rover.track_gauge_m, clock, noise
         self._before_inflation: MotionState | None = None
         self._reach: Reach | None = None
+        self._check = EvidenceCheck()
+        self._driven_m = 0.0
+        self.doubt = Doubt(self.motion)
 
     @property
     def readings(self) -> Readings:
@@ -56,15 +61,24 @@ class Tracker:
         return now
 
     def gate_fix(self, fix: PoseEstimate, asked_s: float) -> str | None:
-        """Why a fix that was asked for at `asked_s` must not be taken in; None if it may be weighed."""
-        return unusable(fix, asked_s) or (self._reach.beyond(fix) if self._reach else None)
+        """Why a fix that was asked for at `asked_s` must not be taken in; None if it may be weighed.
+
+        One that is refused leaves what was driven since the last in doubt.
+        """
+        why = self._check.refusal(fix, asked_s, self._clock.now_s, self._driven_m)
+        why = why or (self._reach.beyond(fix) if self._reach else None)
+        if why is not None:
+            self.doubt = self.doubt.refused()
+        return why
 
     def take_in(self, fix: PoseEstimate, explained: bool) -> None:
         """Learn from a fix that the model explains, or start from one that it does not."""
-        if explained or self.motion.source == PoseSource.PRIOR:
+        explained = explained or self.motion.source == PoseSource.PRIOR
+        if explained:
             self.motion = correction.correct(self.motion, fix, self._noise)
         else:
             self.motion = correction.reset_pose(self.motion, fix)
+        self.doubt = self.doubt.after_fix(fix, explained, self.motion)
         self.since, self._reach, self._before_inflation = SinceFix(), Reach(fix), None
 
     def inflate(self, along_m: float, across_m: float, heading_rad: float) -> None:
@@ -92,6 +106,8 @@ class Tracker:
     def _carry_on(self, left_m: float, right_m: float) -> None:
         before, gauge = self.motion, self._gauge_m
         self.motion = prediction.predict(before, left_m, right_m, gauge, self._clock.now_s, self._noise)
+        self.doubt = self.doubt.driven(left_m, right_m, gauge, self._clock.now_s, self._noise)
+        self._driven_m += (abs(left_m) + abs(right_m)) / 2
         if self._reach is not None:
             self._reach = self._reach.driven(left_m, right_m, gauge)
         travel, rotation = (left_m + right_m) / 2, (right_m - left_m) / gauge

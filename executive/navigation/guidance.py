@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from executive.core.corridor import distance_m as distance_from_m
 from executive.core.types import (
     Outcome,
     Point,
@@ -52,12 +53,6 @@ def turn(motion: MotionState, angle_rad: float, gauge_m: float) -> Belts:
     """Belt travels that turn by `angle_rad` on the spot, at the efficiency learnt so far."""
     rotation = angle_rad / motion.yaw_efficiency
     return Belts(-rotation * gauge_m / 2, rotation * gauge_m / 2)
-
-
-def room_m(pose: PoseEstimate, segment: Segment, sigmas: float) -> float:
-    """How far the rover may stray before it may be beyond the off-track margin; negative where it may be."""
-    cross = abs(segment.offset(pose.x_m, pose.y_m).cross_m)
-    return segment.off_track_m - cross - sigmas * pose.sigma_across_m(segment)
 
 
 def within_room(belts: Belts, room_m: float) -> Belts:
@@ -105,7 +100,8 @@ def plan_leg(
     steer = error if needed else 0.0
     drift_m = leg * abs(math.sin(wrap_rad(pose.heading_rad - segment.bearing_rad)))
     approaching = offset.cross_m * math.sin(wrap_rad(pose.heading_rad - segment.bearing_rad)) > 0
-    worst = abs(offset.cross_m) + limits.sigmas * pose.sigma_position_m + (drift_m if approaching else 0.0)
+    strayed_m = distance_from_m(segment, pose.x_m, pose.y_m)
+    worst = strayed_m + limits.sigmas * pose.sigma_position_m + (drift_m if approaching else 0.0)
     if worst >= segment.off_track_m:
-        return Outcome(Reason.OFF_TRACK, f"cross-track error may reach {worst * 1e3:.0f} mm on the next leg")
+        return Outcome(Reason.OFF_TRACK, f"may come {worst * 1e3:.0f} mm off the segment on the next leg")
     return Outcome(Reason.DONE, value=straight(motion, leg, steer, gauge_m))

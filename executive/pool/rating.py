@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from executive.core.corridor import distance_m, room_m
 from executive.core.errors import StrategyRaised
 from executive.core.ordered_sum import ordered_sum
 from executive.pool.memory import Memory
 from executive.pool.situation import Situation
 from executive.pool.strategy import Strategy
 
+SIGMAS = 2.0  # of the place, to keep from the margin
 LEAST_WEIGHT = 0.02  # a hypothesis below this is no reason to act
 LEAST_FITNESS = 0.1  # below this a remedy is a shot in the dark; ground decides better
 
@@ -33,12 +35,16 @@ def refusal(strategy: Strategy, situation: Situation, memory: Memory) -> str | N
 
 
 def _no_room(strategy: Strategy, situation: Situation) -> str | None:
-    segment, offset = situation.segment, situation.pose.on(situation.segment).track
-    if segment is None or offset is None:
+    segment = situation.segment
+    if segment is None:
         return None
-    if abs(offset.cross_m) >= segment.off_track_m:
+    if distance_m(segment, situation.pose.x_m, situation.pose.y_m) >= segment.off_track_m:
         return "beyond the off-track margin any autonomous correction is forbidden"
-    room = segment.off_track_m - abs(offset.cross_m) - 2 * situation.pose.sigma_across_m(segment)
+    room, doubt = room_m(situation.pose, segment, SIGMAS), situation.doubt
+    if doubt is not None:
+        room = min(room, doubt.room_m(segment, SIGMAS))
+        if strategy.excursion_m > 0.0 and (exceeded := doubt.exceeded(segment)):
+            return exceeded
     if strategy.excursion_m > max(room, 0.0):  # to stay where it is a rover needs no room
         return f"may leave the margin: needs {strategy.excursion_m:.2f} m, has {room:.2f} m"
     return None

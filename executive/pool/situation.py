@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from executive.core.types import Outcome, PoseEstimate, Segment
-from executive.isc import Assessment, Readings
+from executive.isc import Assessment, Doubt, Readings
 
 
 @dataclass(frozen=True)
@@ -18,6 +18,8 @@ class Situation:
     pose: PoseEstimate
     segment: Segment | None
     readings: Readings = field(default_factory=Readings)
+    doubt: Doubt | None = None
+    """Where else the rover may be, and the way driven since the last fix that can be trusted."""
 
     @property
     def along_m(self) -> float | None:

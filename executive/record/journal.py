@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections import Counter
 
+from executive.core.arrival import arrival
 from executive.core.ports import Devices
 from executive.core.types import (
     Call,
     CameraView,
     Images,
     Outcome,
+    Point,
     PoseEstimate,
+    Reason,
     Segment,
 )
 from executive.isc import Assessment, Sensed
+from executive.isc.evidence_check import unfit
 from executive.pool import Attempt, Choice
 from executive.record import events
 from executive.record.bus import EventBus
@@ -25,6 +29,14 @@ KEEP_EVERY = 5
 VIEW_PX = 320
 
 
+def waypoint_of(route: tuple[Segment, ...], index: int) -> tuple[Point, float]:
+    """Where a way-point of a route lies, counted from 0, and the tolerance of it [m]."""
+    if index > 0:
+        return route[index - 1].end, route[index - 1].tolerance_m
+    first = route[0]
+    return first.start, first.tolerance_m if first.start_tolerance_m is None else first.start_tolerance_m
+
+
 class RunJournal:
     """Publishes what it is told as events, on the bus that the recorder listens to."""
 
@@ -34,7 +46,7 @@ class RunJournal:
         self._looks = 0
         self._segment: Segment | None = None
         self.called: Call | None = None
-        self.reached = 0
+        self.reached: set[int] = set()
 
     def write(self, event: object) -> None:
         """Write any event of the record at the present mission time."""
@@ -47,15 +59,29 @@ class RunJournal:
         self._segment = segment
         self.write(events.SegmentEvent(segment))
 
-    def waypoint(self, index: int, pose: PoseEstimate) -> None:
-        target = self._route[0].start if index == 0 else self._route[index - 1].end
-        self.reached = max(self.reached, index + 1)
-        self.write(events.WaypointEvent(index, target, pose))
+    def waypoint(self, index: int, pose: PoseEstimate) -> Outcome[object]:
+        """Judge a way-point that a leaf reports: reached only where this pose carries it, else why not."""
+        target, within_m = waypoint_of(self._route, index)
+        spoilt = unfit(pose.covariance)
+        judged = arrival(pose, target, within_m)
+        if judged.ok and spoilt is not None:
+            judged = Outcome(Reason.ARRIVAL_UNCERTAIN, spoilt)
+        if judged.ok:
+            self.reached.add(index)
+            self.write(events.WaypointEvent(index, target, pose))
+        else:
+            said = f"way-point {index} was reported but not reached: {judged.detail}"
+            self.write(events.LogEvent(events.Level.WARNING, "journal", said))
+        return judged
 
     def missed(self) -> str | None:
-        """What a tree that succeeds has left out: way-points, if it reports any at all; None for nothing."""
+        """The way-points that a tree that succeeds has left out; None where every one was reached."""
         total = len(self._route) + 1
-        return f"{self.reached} of {total} way-points were reached" if 0 < self.reached < total else None
+        missed = [str(index) for index in range(total) if index not in self.reached]
+        if not missed:
+            return None
+        listed = f"; not way-point{'s'[: len(missed) > 1]} {', '.join(missed)}" if self.reached else ""
+        return f"{len(self.reached)} of {total} way-points were reached{listed}"
 
     def call(self, call: Call) -> None:
         self.called = call

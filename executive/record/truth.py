@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
+from executive.core.corridor import distances_m
 from executive.core.types import Array, PoseEstimate, Segment
 from executive.record.events import SegmentEvent, TruthEvent
 from executive.record.history import At, History
@@ -63,10 +64,11 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class CrossTrack:
-    """True cross-track error: NaN where no segment was under way. All shapes (n,)."""
+    """True cross-track error, and distance from the segment: NaN where there was none. All shapes (n,)."""
 
     time_s: Array
     cross_m: Array
+    distance_m: Array
     on_track_m: Array
     off_track_m: Array
 
@@ -74,7 +76,7 @@ class CrossTrack:
 def cross_track(track: Track, segments: list[At[SegmentEvent]]) -> CrossTrack:
     """The true offset of each sample from the segment under way at its time (left positive)."""
     under_way = np.searchsorted([at.time_s for at in segments], track.time_s, side="right") - 1
-    columns = np.full((3, len(track.time_s)), np.nan)
+    columns = np.full((4, len(track.time_s)), np.nan)
     for number, at in enumerate(segments):
         if at.event.segment is not None:
             mine = under_way == number
@@ -83,19 +85,20 @@ def cross_track(track: Track, segments: list[At[SegmentEvent]]) -> CrossTrack:
 
 
 def _columns(segment: Segment, position_m: Array) -> Array:
-    """Cross-track error and both margins, shape (3, n)."""
+    """Cross-track error, distance and both margins, shape (4, n)."""
     cosine, sine = np.cos(segment.bearing_rad), np.sin(segment.bearing_rad)
     dx, dy = position_m[:, 0] - segment.start.x_m, position_m[:, 1] - segment.start.y_m
     ones = np.ones(len(dx))
-    return np.array([-sine * dx + cosine * dy, segment.on_track_m * ones, segment.off_track_m * ones])
+    away = distances_m(segment, position_m[:, 0], position_m[:, 1])
+    return np.array([-sine * dx + cosine * dy, away, segment.on_track_m * ones, segment.off_track_m * ones])
 
 
 def driven_beyond_m(track: Track, cross: CrossTrack) -> Array:
-    """True way driven so far while the true cross-track error exceeds the off-track margin [m], shape (n,).
+    """True way driven so far farther from the segment than its off-track margin [m], shape (n,).
 
     A step counts by where it ends; one that starts or ends without a segment does not count.
     """
-    beyond: NDArray[np.bool_] = np.abs(cross.cross_m) > cross.off_track_m  # False where NaN
+    beyond: NDArray[np.bool_] = cross.distance_m > cross.off_track_m  # False where NaN
     counted = beyond[1:] & np.isfinite(cross.cross_m[:-1])
     return np.concatenate([[0.0], np.cumsum(np.where(counted, track.steps_m(), 0.0))])
 

@@ -13,10 +13,11 @@ from executive.config.source import read
 from executive.config.validate import guess, listed
 from executive.core.errors import ConfigError, Problem
 from executive.core.registry import PROJECT_FILE, in_project
+from executive.run.resolved import ResolvedScenario
 
 
 def check_file(path: Path) -> tuple[Problem, ...]:
-    """Every problem of one file; none is an empty tuple."""
+    """Every problem of one file, or else every warning; none is an empty tuple."""
     try:
         with in_project(project_for(path)):
             return _problems(path)
@@ -36,8 +37,8 @@ def _problems(path: Path) -> tuple[Problem, ...]:
         near = next((text for key in keys if (text := guess(key, known))), "")
         message = f"got a file of no known kind, expected one of the keys {listed(known)}{near}"
         return tuple(sorted({*source.problems, source.at(()).problem(message)}))
-    file_kind(kind).check(source)
-    return ()
+    found = file_kind(kind).check(source)
+    return found.warnings if isinstance(found, ResolvedScenario) else ()
 
 
 def as_text(problems: Sequence[Problem]) -> str:
@@ -45,9 +46,22 @@ def as_text(problems: Sequence[Problem]) -> str:
     return "".join(f"{problem}\n" for problem in problems)
 
 
+def _severity(problem: Problem) -> str:
+    return "warning" if problem.warning else "error"
+
+
 def as_json(problems: Sequence[Problem]) -> str:
     """A list of objects."""
-    listing = [{"file": p.file, "line": p.line, "column": p.column, "message": p.message} for p in problems]
+    listing = [
+        {
+            "file": p.file,
+            "line": p.line,
+            "column": p.column,
+            "message": p.message,
+            "severity": _severity(p),
+        }
+        for p in problems
+    ]
     return json.dumps({"problems": listing}, indent=2, ensure_ascii=False) + "\n"
 
 
@@ -56,7 +70,7 @@ def as_sarif(problems: Sequence[Problem]) -> str:
     results = [
         {
             "ruleId": "configuration",
-            "level": "error",
+            "level": _severity(p),
             "message": {"text": p.message},
             "locations": [
                 {

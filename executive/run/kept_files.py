@@ -1,7 +1,7 @@
 """The files that a run used, kept in its folder: enough to repeat it anywhere, and to say what has changed.
 
-`files/` holds a copy of each file of the user's own in the same places relative to each other, so that they find
-each other there as they did; `files/installed/` holds what came with Longarm or a plug-in, for comparison only.
+`files/` holds a copy of each file of the user's own, in the same places relative to each other, so that they
+find each other as they did; `files/installed/` what came with Longarm, for comparison only.
 """
 
 from __future__ import annotations

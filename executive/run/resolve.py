@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +67,7 @@ def resolve(source: Source) -> ResolvedScenario:
 
 
 def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
-    problems = Problems()
+    problems, warnings = Problems(), list[Problem]()
     instruments = instruments_there_are()
     for spec in instruments:
         source = spec.expand(source)
@@ -98,7 +99,9 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
         impossible = list(mission_problems(source, ("mission",), file.mission))
         problems.found.extend(impossible)
         if backend is not None and world is not None and not impossible:
-            problems.found.extend(_world_problems(source, backend, world, file.mission))
+            of_the_world = _world_problems(source, backend, world, file.mission)
+            problems.found.extend(each for each in of_the_world if not each.warning)
+            warnings.extend(each for each in of_the_world if each.warning)
     problems.check()
     if tree is None or tree_path is None:
         raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
@@ -119,6 +122,7 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
         localizer,
         project,
         inputs or {},
+        warnings=tuple(warnings),
     )
 
 
@@ -203,7 +207,8 @@ def _world_problems(
     source: Source, backend: BackendSpec, world: BaseModel, mission: MissionFile
 ) -> list[Problem]:
     found = backend.problems(world, mission.route())
-    return [source.at(_place_of(problem)).problem(problem.message) for problem in found]
+    at = ((source.at(_place_of(problem)), problem) for problem in found)
+    return [replace(mark.problem(problem.message), warning=problem.warning) for mark, problem in at]
 
 
 def _place_of(problem: WorldProblem) -> Place:

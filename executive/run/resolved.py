@@ -14,7 +14,7 @@ from executive.config.backends import BackendSpec
 from executive.config.localizers import ChosenLocalizer
 from executive.config.models import MissionFile, ScenarioFile
 from executive.config.rig_overrides import rig_fields
-from executive.core.errors import ConfigError
+from executive.core.errors import ConfigError, Problem
 from executive.core.registry import Project, in_project
 from executive.core.rig import Rig
 from executive.pool.known import DEFAULT_POLICY
@@ -46,6 +46,8 @@ class ResolvedScenario:
     """The mission's `tree_inputs`, in SI, for the tree's ports of these names."""
     instead: Instead = field(default_factory=dict)
     """Texts that stand for tree files in this run."""
+    warnings: tuple[Problem, ...] = field(default=(), compare=False)
+    """What may go wrong although nothing is."""
 
     @property
     def name(self) -> str:

@@ -116,7 +116,7 @@ def _ended(run: Run) -> RunEnd:
     call = run.journal.called
     if call is not None:
         return RunEnd("help", f"{call.reason}: {call.detail}")
-    return RunEnd("safe_hold", reason)
+    return RunEnd("safe_hold", "; ".join(filter(None, (reason, run.journal.missed()))) or None)
 
 
 def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:

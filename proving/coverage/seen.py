@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from executive.config.project import read_project
 from executive.config.source import read_text
 from executive.core.errors import ConfigError, RecordError
+from executive.core.registry import Project, current_project, in_project
 from executive.core.types import Call, Reason
 from executive.record import History, events, leading
 from executive.tree.load import load_tree
@@ -114,19 +116,28 @@ def read_runs(folders: list[Path]) -> tuple[Universe, Seen]:
     RecordError where a folder has no run in it; ConfigError for a tree that is not there any more.
     """
     universe, seen = Universe(), Seen()
-    strategies = strategy_trees(load_strategies())
-    known: set[str] = set()
+    known: set[Path | str] = set()
     for record in _records(folders):
         history = History.of(record)
         try:
-            tree = str(scenario_of(history)["mission"]["tree"])
+            scenario = scenario_of(history)
+            tree = str(scenario["mission"]["tree"])
         except (RecordError, ConfigError, KeyError):
             continue  # cut off before it began: it shows nothing
-        if tree not in known:
-            known.add(tree)
-            universe.add(load_tree(tree), strategies)
+        kept = record.parent / tree
+        reference = kept if kept.is_file() else tree  # a tree of one's own lies in the run folder
+        if reference not in known:
+            known.add(reference)
+            with in_project(_project_of(record.parent, scenario)):
+                universe.add(load_tree(reference), strategy_trees(load_strategies()))
         seen.add(str(record.parent), history, universe)
     return universe, seen
+
+
+def _project_of(folder: Path, scenario: Mapping[str, Any]) -> Project | None:
+    """The project that a run kept in its folder; else the one under way."""
+    file = folder / str(scenario.get("project", ""))
+    return read_project(file) if file.is_file() else current_project()
 
 
 def _records(folders: list[Path]) -> list[Path]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from executive.core import corridor
+from executive.core.arrival import radius_m
 from executive.core.types import (
     Outcome,
     Point,
@@ -58,8 +60,8 @@ class Arrived(Leaf):
 
     def step(self) -> Outcome[object]:
         remaining = guidance.distance_m(self.pose, self.target)
-        radius = min(self.share * self.within, self.within - 2 * self.pose.sigma_position_m)
-        reason = Reason.DONE if remaining <= max(radius, 0.3 * self.within) else Reason.GUARD
+        radius = min(self.share * self.within, radius_m(self.pose, self.within))
+        reason = Reason.DONE if remaining <= radius else Reason.GUARD
         return Outcome(reason, f"{remaining * 1e3:.0f} mm to go")
 
 
@@ -86,7 +88,7 @@ class NotOvershot(Leaf):
 
 
 class InsideMargin(Leaf):
-    """Is the rover inside the off-track margin, its uncertainty allowed for?"""
+    """Is the rover in the segment's corridor, which ends past its ends, its uncertainty allowed for?"""
 
     condition = True
 
@@ -97,10 +99,10 @@ class InsideMargin(Leaf):
     outcomes = (Reason.DONE, Reason.OFF_TRACK)
 
     def step(self) -> Outcome[object]:
-        cross = abs(self.segment.offset(self.pose.x_m, self.pose.y_m).cross_m)
-        inside = guidance.room_m(self.pose, self.segment, self.sigmas) > 0.0
+        away_m = corridor.distance_m(self.segment, self.pose.x_m, self.pose.y_m)
+        inside = corridor.room_m(self.pose, self.segment, self.sigmas) > 0.0
         reason = Reason.DONE if inside else Reason.OFF_TRACK
-        return Outcome(reason, f"{cross * 1e3:.0f} mm off the line")
+        return Outcome(reason, f"{away_m * 1e3:.0f} mm off the segment")
 
 
 class AsPredicted(Leaf):

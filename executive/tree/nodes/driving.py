@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
+from executive.core import corridor
 from executive.core.devices import DRIVE
 from executive.core.ports import Action
 from executive.core.types import (
@@ -22,7 +23,6 @@ from executive.core.values import (
     SEGMENT,
 )
 from executive.isc import Sensed
-from executive.navigation import guidance
 from executive.navigation.belt_watch import BeltWatch
 from executive.navigation.guidance import Belts
 from executive.tree.nodes.action import ActionLeaf
@@ -77,10 +77,19 @@ class DrivingLeaf(ActionLeaf):
         sensed = self.services.classification.tracker.sensed
         if sensed is not None and (problem := self._read_problem(sensed)):
             return problem
-        room_m = math.inf if self.segment is None else guidance.room_m(pose, self.segment, self.sigmas)
+        return None if self.segment is None else self._margin_problem(pose, self.segment)
+
+    def _margin_problem(self, pose: PoseEstimate, segment: Segment) -> Outcome[object] | None:
+        """Why this drive may leave the corridor: by the pose, or by the belts where the pose is in doubt."""
+        room_m = corridor.room_m(pose, segment, self.sigmas)
         if room_m <= 0.0:
             return Outcome(Reason.OFF_TRACK, f"may be {-room_m * 1e3:.0f} mm beyond the margin")
-        return None
+        doubt = self.services.classification.tracker.doubt
+        if (room_m := doubt.room_m(segment, self.sigmas)) <= 0.0:
+            told = f"may be {-room_m * 1e3:.0f} mm beyond the margin if the last fixes are false"
+            return Outcome(Reason.OFF_TRACK, told)
+        exceeded = doubt.exceeded(segment)
+        return None if exceeded is None else Outcome(Reason.OFF_TRACK, exceeded)
 
     def _read_problem(self, sensed: Sensed) -> Outcome[object] | None:
         """What the readings say against going on, of the devices that this robot has."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from executive.core.devices import DRIVE
 from executive.core.ports import Action, LocaliseRequest
 from executive.core.types import (
@@ -36,7 +38,7 @@ class Localise(ActionLeaf):
     settle = In[float](DURATION, "time at rest before the first exposure", default=5.0)
 
     needs = ("drive",)
-    outcomes = (
+    outcomes: ClassVar[tuple[Reason, ...]] = (
         Reason.DONE,
         Reason.NOT_SEEN,
         Reason.POOR_VIEW,

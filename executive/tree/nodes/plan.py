@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from executive.core import corridor
 from executive.core.types import (
     Outcome,
     Point,
@@ -21,7 +22,6 @@ from executive.core.values import (
     TEXT,
 )
 from executive.isc.motion import ADVANCE, YAW_EFFICIENCY
-from executive.navigation import guidance
 from executive.tree.nodes.base import (
     FromTree,
     In,
@@ -44,36 +44,28 @@ class BeginSegment(Leaf):
 
 
 class StartHere(Leaf):
-    """Accept the first way-point as reached if the rover stands in its tolerance zone."""
+    """Report the first way-point as reached, if the rover stands in its tolerance zone by two sigma."""
 
     route = In[tuple[Segment, ...]](ROUTE, "the route")
     pose = In[PoseEstimate](POSE, "the pose")
 
-    outcomes = (Reason.DONE, Reason.OFF_TRACK)
+    outcomes = (Reason.DONE, Reason.OFF_TRACK, Reason.ARRIVAL_UNCERTAIN)
 
     def step(self) -> Outcome[object]:
-        first = self.route[0]
-        away = math.hypot(self.pose.x_m - first.start.x_m, self.pose.y_m - first.start.y_m)
-        if away > first.off_track_m:
-            return Outcome(Reason.OFF_TRACK, f"stands {away:.2f} m from the first way-point")
-        self.services.journal.waypoint(0, self.pose)
-        return Outcome(Reason.DONE, f"{away * 1e3:.0f} mm from the first way-point")
+        judged = self.services.journal.waypoint(0, self.pose)
+        return Outcome(Reason.OFF_TRACK, judged.detail) if judged.reason is Reason.UNEXPECTED else judged
 
 
 class WaypointReached(Leaf):
-    """Report the end of `segment` as reached, if the rover believes to be in its tolerance zone."""
+    """Report the end of `segment` as reached, if the rover stands in its tolerance zone by two sigma."""
 
     segment = In[Segment](SEGMENT, "the segment that ends here")
     pose = In[PoseEstimate](POSE, "the pose")
 
-    outcomes = (Reason.DONE, Reason.UNEXPECTED)
+    outcomes = (Reason.DONE, Reason.UNEXPECTED, Reason.ARRIVAL_UNCERTAIN)
 
     def step(self) -> Outcome[object]:
-        away = guidance.distance_m(self.pose, self.segment.end)
-        if not away <= self.segment.tolerance_m:
-            return Outcome(Reason.UNEXPECTED, f"{away * 1e3:.0f} mm from a way-point said to be reached")
-        self.services.journal.waypoint(self.segment.index + 1, self.pose)
-        return Outcome(Reason.DONE)
+        return self.services.journal.waypoint(self.segment.index + 1, self.pose)
 
 
 class SetLeg(Leaf):
@@ -132,7 +124,10 @@ class DeadReckon(Leaf):
 
 
 class ChooseSide(Leaf):
-    """Choose a point ahead and aside, on the side where the off-track margin leaves more room."""
+    """Choose a point ahead and aside, on the side where the off-track margin leaves more room.
+
+    Ahead ends with the segment: nothing is looked for beyond.
+    """
 
     pose = In[PoseEstimate](POSE, "the pose")
     segment = In[Segment](SEGMENT, "the segment under way")
@@ -147,11 +142,11 @@ class ChooseSide(Leaf):
         offset = segment.offset(self.pose.x_m, self.pose.y_m)
         side = -1.0 if offset.cross_m > 0 else 1.0
         cross = offset.cross_m + side * self.beside
-        if abs(cross) + 2 * self.pose.sigma_position_m >= segment.off_track_m:
-            return Outcome(Reason.OFF_TRACK, "no room beside")
-        along = offset.along_m + self.ahead
+        along = min(offset.along_m + self.ahead, max(segment.length_m, offset.along_m))
         c, s = math.cos(segment.bearing_rad), math.sin(segment.bearing_rad)
-        self.point = Point(
-            segment.start.x_m + c * along - s * cross, segment.start.y_m + s * along + c * cross
-        )
+        point = Point(segment.start.x_m + c * along - s * cross, segment.start.y_m + s * along + c * cross)
+        away_m = corridor.distance_m(segment, point.x_m, point.y_m)
+        if away_m + 2 * self.pose.sigma_position_m >= segment.off_track_m:
+            return Outcome(Reason.OFF_TRACK, "no room beside")
+        self.point = point
         return Outcome(Reason.DONE, "to the left" if side > 0 else "to the right")

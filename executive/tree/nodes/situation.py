@@ -28,6 +28,7 @@ def choose(
         pose=pose,
         segment=segment,
         readings=_readings(services),
+        doubt=services.classification.tracker.doubt,
     )
     return services.pool.choose(situation, at_hand).strategy
 

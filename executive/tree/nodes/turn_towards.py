@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
+from executive.core import corridor
 from executive.core.types import (
     Outcome,
     Point,
@@ -51,7 +52,7 @@ class TurnTowards(DrivingLeaf):
             return outcome
         belts = guidance.turn(motion, error, self.services.rig.rover.track_gauge_m)
         if self.segment is not None:
-            room_m = guidance.room_m(pose, self.segment, self.sigmas)
+            room_m = corridor.room_m(pose, self.segment, self.sigmas)
             if room_m < LEAST_ROOM_M:
                 return Outcome(Reason.OFF_TRACK, f"{room_m * 1e3:.0f} mm to the margin, too near to turn")
             belts = guidance.within_room(belts, room_m)

@@ -15,7 +15,7 @@ from executive.core.types import (
     Reason,
 )
 from executive.core.values import LENGTH, NUMBER
-from executive.isc.gate import unusable
+from executive.isc.evidence_check import unusable
 from executive.tree.nodes.base import In, Leaf
 
 MOST_ASTRAY = 2  # tendencies in a row

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from executive.core.types import PoseEstimate
-from executive.isc import attitude, correction, gate, motion, prediction
+from executive.isc import attitude, correction, evidence_check, motion, prediction
 from executive.isc.motion import (
     ADVANCE,
     DRIFT,
@@ -175,7 +175,7 @@ def test_covariance_stays_symmetric_and_positive_over_a_long_trek() -> None:
 )
 def test_a_pose_that_is_no_number_or_old_says_nothing(change, why):
     pose = PoseEstimate(101.0, (1.0, 2.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.eye(6), "markers")
-    assert gate.unusable(replace(pose, **change), since_s=100.0) == why
+    assert evidence_check.unusable(replace(pose, **change), since_s=100.0) == why
 
 
 @given(st.floats(0.0005, 0.1), st.floats(0.001, 0.1), st.floats(-1.0, 1.0))

@@ -133,7 +133,7 @@ def services(pool: Any = None) -> Any:
         classification=SimpleNamespace(
             predicted=lambda: pose,
             extrapolate=lambda pose, segment: assessment,
-            tracker=SimpleNamespace(readings=Readings()),
+            tracker=SimpleNamespace(readings=Readings(), doubt=None),
         ),
         journal=SimpleNamespace(),
     )

@@ -14,6 +14,7 @@ from executive.config.backends import BackendRequest
 from executive.core.devices import DRIVE, INCLINOMETER, TETHER
 from executive.core.rig import RigCalibration
 from executive.core.types import (
+    Localisation,
     Outcome,
     Point,
     PoseEstimate,
@@ -42,7 +43,8 @@ from executive.tree.nodes.base import (
 from executive.tree.nodes.services import Services
 
 SEGMENT = Segment(Point(2.0, 0.0), Point(3.0, 0.0), 0.03, 0.25, 0.03)
-ENDS_HERE = replace(SEGMENT, start=Point(1.0, 0.0), end=Point(2.0, 0.0))
+ENDS_HERE = Segment(Point(3.0, 0.0), Point(2.0, 0.0), 0.03, 0.25, 0.03, 1)
+ROUTE = (SEGMENT, ENDS_HERE)
 AHEAD, BEHIND, ASIDE = Point(2.5, 0.0), Point(1.95, 0.0), Point(2.0, 1.0)
 PATIENCE_TICKS = 1500
 
@@ -69,11 +71,12 @@ class Bench:
         request = BackendRequest(FakeWorld(), (SEGMENT,), 3, "geometric", RigCalibration(), None, 1.0)
         self.backend = FakeBackend(request)
         self.recorder = Recorder(folder / "record.mcap")
-        self.journal = RunJournal(EventBus(self.backend.clock, [self.recorder.write]), (SEGMENT,))
+        self.journal = RunJournal(EventBus(self.backend.clock, [self.recorder.write]), ROUTE)
         self.localizer: Any = OverheadLocalizer(self.backend.devices, self.backend.rig, self.backend.clock)
         self.store, self.trace = Store(), Trace()
         self.classification = self.known(0.0)
         self.leaves: dict[str, Leaf] = {}
+        self.looks: list[Any] = []
 
     def known(self, y_m: float, heading_rad: float = 0.0) -> Classification:
         """A classification that believes to be at (2, y) with small uncertainty."""
@@ -192,6 +195,44 @@ def jumped(bench: Bench) -> None:
     bench.backend.robot.x_m += 0.3
 
 
+def unsure(bench: Bench) -> None:
+    """Believed exactly at the way-point, to a standard deviation of 20 mm."""
+    bench.classification = bench.known(0.0)
+    bench.classification.tracker.inflate(0.02, 0.02, 0.01)
+
+
+def coarse(bench: Bench) -> None:
+    """What is believed is unsure, and no look at it is any better."""
+    unsure(bench)
+    sees_coarsely(bench)
+
+
+def sees_coarsely(bench: Bench) -> None:
+    class Coarse:
+        def locate(self, request: Any) -> Ended:
+            bench.looks.append(request)
+            x_m = bench.backend.robot.x_m + 1e-4 * len(bench.looks)
+            fix = replace(
+                bench.classification.predicted(),
+                time_s=bench.backend.clock.now_s,
+                position_site_m=(x_m, 0.0, 0.0),
+                covariance=np.diag([0.04**2] * 3 + [1e-4] * 3),
+                source="overhead",
+            )
+            return Ended(Outcome(Reason.DONE, "", Localisation(fix)))
+
+    bench.localizer = Coarse()
+
+
+def unsure_and_sees(reason: Reason) -> Setup:
+    def setup(bench: Bench) -> None:
+        unsure(bench)
+        sees(reason)(bench)
+
+    return setup
+
+
+HERE: dict[str, object] = {"target": Point(2.0, 0.0), "within": 0.03}
 DRIVES: dict[str, dict[str, object]] = {
     "drive_blind": {"target": AHEAD},
     "drive_leg": {"target": AHEAD},
@@ -226,6 +267,13 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
         for reason in TYPES["localise"].outcomes
         if reason is not Reason.DONE
     ),
+    ("measure_arrival", Reason.DONE, unsure, HERE),
+    ("measure_arrival", Reason.ARRIVAL_UNCERTAIN, coarse, HERE),
+    *(
+        ("measure_arrival", reason, unsure_and_sees(reason), HERE)
+        for reason in TYPES["localise"].outcomes
+        if reason is not Reason.DONE
+    ),
     ("not_overshot", Reason.DONE, nothing, {"target": AHEAD, "within": 0.03}),
     ("not_overshot", Reason.OVERSHOOT, nothing, {"target": BEHIND, "within": 0.03}),
     ("point_head", Reason.DONE, nothing, {}),
@@ -241,7 +289,8 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("show_markers", Reason.BLOCKED, ends("cabin", "move", Reason.BLOCKED), {}),
     ("show_markers", Reason.DEVICE, ends("cabin", "move", Reason.DEVICE), {}),
     ("start_here", Reason.DONE, nothing, {"route": (SEGMENT,)}),
-    ("start_here", Reason.OFF_TRACK, believed_at(0.6), {"route": (SEGMENT,)}),
+    ("start_here", Reason.OFF_TRACK, believed_at(0.04), {"route": (SEGMENT,)}),
+    ("start_here", Reason.ARRIVAL_UNCERTAIN, unsure, {"route": (SEGMENT,)}),
     ("take_picture", Reason.DONE, nothing, {}),
     ("take_picture", Reason.DEVICE, ends("cameras", "take", Reason.DEVICE), {}),
     ("turn_towards", Reason.OFF_HEADING, turned_in_vain, {"target": ASIDE}),
@@ -249,6 +298,7 @@ CASES: list[tuple[str, Reason, Setup, dict[str, object]]] = [
     ("wait", Reason.DEVICE, alarmed, {"duration": 3.0}),
     ("watch_motion", Reason.UNEXPECTED, jumped, {}),
     ("waypoint_reached", Reason.DONE, nothing, {"segment": ENDS_HERE}),
+    ("waypoint_reached", Reason.ARRIVAL_UNCERTAIN, unsure, {"segment": ENDS_HERE}),
     ("waypoint_reached", Reason.UNEXPECTED, nothing, {}),
 ]
 for _name, _values in DRIVES.items():
@@ -281,3 +331,20 @@ def test_a_leaf_ends_for_the_reason_it_declares(
 def test_every_declared_outcome_of_every_leaf_has_its_case() -> None:
     declared = {(name, reason) for name, leaf in TYPES.items() for reason in leaf.outcomes}
     assert {(kind, reason) for kind, reason, *_ in CASES} == declared
+
+
+def test_an_arrival_is_measured_as_finely_as_its_tolerance_asks(tmp_path: Path) -> None:
+    bench = Bench(tmp_path)
+    coarse(bench)
+    bench.run("measure_arrival", HERE)
+    bench.recorder.close()
+    assert [request.position_sigma_m for request in bench.looks] == pytest.approx([0.009] * 3)
+
+
+@pytest.mark.parametrize("values", [HERE, {**HERE, "target": AHEAD}])
+def test_nothing_is_measured_where_the_pose_says_enough(tmp_path: Path, values: dict[str, object]) -> None:
+    bench = Bench(tmp_path)
+    sees_coarsely(bench)
+    outcome = bench.run("measure_arrival", values)
+    bench.recorder.close()
+    assert (outcome.reason, bench.looks) == (Reason.DONE, [])
