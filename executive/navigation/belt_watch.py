@@ -23,10 +23,15 @@ class BeltWatch:
         self._started_s, self._started_m = started.time_s, (started.left_m, started.right_m)
         self._looked = [(0.0, 0.0), (0.0, 0.0)]  # time since the start, and what was counted until then
 
+    @property
+    def longest_s(self) -> float:
+        """The longest this drive may take [s]."""
+        return LONGEST * self._planned_s + SLACK_S
+
     def problem(self, now: TrackReading) -> str | None:
         """What is wrong with this drive, None if nothing is."""
         elapsed_s = now.time_s - self._started_s
-        if elapsed_s > LONGEST * self._planned_s + SLACK_S:
+        if elapsed_s > self.longest_s:
             return f"still driving after {elapsed_s:.0f} s, {self._planned_s:.0f} s were planned"
         return next(self._stalled(elapsed_s, (now.left_m, now.right_m)), None)
 

@@ -102,9 +102,17 @@ def _loop(run: Run, changes: _Changes) -> RunEnd:
         if run.root.status is not Status.RUNNING:
             return _ended(run)
         if run.services.clock.ticks >= limit_ticks:
-            return RunEnd("time_limit", f"still under way after {run.time_limit_s:.0f} s")
+            return _out_of_time(run)
         with watch.measure("advance"):
             run.backend.advance()
+
+
+def _out_of_time(run: Run) -> RunEnd:
+    """A run that has called and waits for ground ends as one that was not answered."""
+    call = run.journal.called
+    if call is not None and any("link" in leaf.needs for leaf in run.trace.entered.values()):
+        return RunEnd("help", f"{call.reason}: {call.detail}")
+    return RunEnd("time_limit", f"still under way after {run.time_limit_s:.0f} s")
 
 
 def _ended(run: Run) -> RunEnd:

@@ -17,6 +17,7 @@ from executive.core.types import (
 )
 from executive.core.values import (
     ANGLE,
+    DURATION,
     FORCE,
     NUMBER,
     POSE,
@@ -51,6 +52,7 @@ class DrivingLeaf(ActionLeaf):
     tilt_limit = In[float](ANGLE, "stop at this tilt", default=math.radians(25.0))
     tension_limit = In[float](FORCE, "stop at this pull; half of one at a snag may not be felt", default=4.0)
     sigmas = In[float](NUMBER, "standard deviations to keep from the off-track margin", default=2.0)
+    patience = In[float](DURATION, "how late the belts' own word may be that they are there", default=10.0)
 
     outcomes: ClassVar[tuple[Reason, ...]] = DRIVING_OUTCOMES
 
@@ -65,6 +67,10 @@ class DrivingLeaf(ActionLeaf):
         speed, tracks = self.services.rig.rover.speed_m_s, self.services.devices[DRIVE]
         self._belts = BeltWatch(planned.value, speed, tracks.read())
         return tracks.drive(planned.value.left_m, planned.value.right_m, speed)
+
+    def due_s(self) -> float:
+        """By the mission's clock what the belts' watch asks of their own: a reading that is old ages not."""
+        return self._belts.longest_s
 
     def watch(self) -> Outcome[object] | None:
         problem = self._problem(self._carry_on())

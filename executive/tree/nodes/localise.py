@@ -36,6 +36,7 @@ class Localise(ActionLeaf):
     position = In[float](LENGTH, "standard deviation wanted; 0: that of the quality", default=0.0)
     yaw = In[float](ANGLE, "standard deviation wanted; 0: that of the quality", default=0.0)
     settle = In[float](DURATION, "time at rest before the first exposure", default=5.0)
+    patience = In[float](DURATION, "how long after its budget it may end", default=300.0)
 
     needs = ("drive",)
     outcomes: ClassVar[tuple[Reason, ...]] = (
@@ -50,7 +51,10 @@ class Localise(ActionLeaf):
         Reason.DEVICE,
     )
 
+    late = Reason.TIMEOUT
+
     def begin(self) -> None:
+        self._action, self._settled = None, None
         self.services.devices[DRIVE].stop()
         clock = self.services.clock
         self._start_tick = clock.ticks + clock.ticks_for(self.settle)
@@ -60,13 +64,16 @@ class Localise(ActionLeaf):
             return None
         if self._action is None:
             self._start_s = self.services.clock.now_s
-            self._action = self.request()
+            self.start()
         return super().step()
 
     def request(self) -> Action[Localisation]:
         predicted = self.services.classification.predicted()
         request = LocaliseRequest(self.quality, predicted, self.budget, self.segment, self.position, self.yaw)
         return self.services.localizer.locate(request)
+
+    def due_s(self) -> float:
+        return self.budget
 
     def finish(self, outcome: Outcome[Localisation]) -> Outcome[PoseEstimate]:
         seen = outcome.value or Localisation(None)

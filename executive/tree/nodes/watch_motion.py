@@ -19,6 +19,8 @@ from executive.isc.evidence_check import unusable
 from executive.tree.nodes.base import In, Leaf
 
 MOST_ASTRAY = 2  # tendencies in a row
+BUDGET_S = 120.0  # of one look
+PATIENCE_S = 60.0  # beyond it: a look that does not end is given up, and the next one begun
 
 
 class WatchMotion(Leaf):
@@ -42,14 +44,17 @@ class WatchMotion(Leaf):
         self._astray = 0
 
     def step(self) -> Outcome[object] | None:
-        predicted = self.services.classification.predicted()
+        clock, predicted = self.services.clock, self.services.classification.predicted()
         self._predictions[predicted.time_s] = predicted
         if self._action is None:
-            request = LocaliseRequest(Quality.TREND, predicted, budget_s=120.0)
+            request = LocaliseRequest(Quality.TREND, predicted, budget_s=BUDGET_S)
             self._action, self._asked_s = self.services.localizer.locate(request), predicted.time_s
+            self._until_ticks = clock.ticks + clock.ticks_for(BUDGET_S + PATIENCE_S)
             return None
         outcome = self._action.poll()
         if outcome is None:
+            if clock.ticks >= self._until_ticks:
+                self.halt()
             return None
         self._action = None
         seen = outcome.value.pose if outcome.ok and outcome.value is not None else None

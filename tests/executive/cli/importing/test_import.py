@@ -181,8 +181,8 @@ def test_every_problem_is_told_at_once_at_its_place_in_the_xml(tmp_path):
         (
             6,
             25,
-            'got the unknown port "qualty" of localise, expected quality, pose, segment, budget, position, '
-            'yaw or settle; did you mean "quality"?',
+            'got the unknown port "qualty" of localise, expected patience, quality, pose, segment, budget, '
+            'position, yaw or settle; did you mean "quality"?',
         ),
         (9, 7, "inverter needs one child"),
         (11, 20, 'got the unknown node "nowhere", expected a node or a tree'),
