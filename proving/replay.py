@@ -40,7 +40,7 @@ def replay(run_dir: Path, out: Path | None, as_json: bool) -> int:
 
     Example: longarm replay runs/first_traverse-7
     """
-    from executive.run.kept_files import changes
+    from executive.run import changes
     from proving.engine import Limits
 
     for words in () if as_json else changes(run_dir):

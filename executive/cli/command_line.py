@@ -129,7 +129,7 @@ def run(
     for broken in () if quiet else (*broken_strategies(), *broken_instruments()):
         click.echo(f"longarm: the run does without {broken}", err=True)
     file = located(file, "scenarios", "missions")
-    options = app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json), force=force)
+    options = app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json), force=force, alone=True)
     finished = app.run(file, options)
     if as_json:
         click.echo(json.dumps(finished.result.to_json(), indent=2))

@@ -9,6 +9,7 @@ from executive.record.digest import digest
 from executive.record.divergence import Divergence, first_divergence
 from executive.record.evidence import DETECTION_GRACE_S, first_leading, leading
 from executive.record.history import At, History
+from executive.record.integrity import require_sound
 from executive.record.reader import Message, read_record, read_truth
 from executive.record.recorder import Recorder, TruthRecorder
 from executive.record.result import RunFigures, summarise
@@ -54,6 +55,7 @@ __all__ = [
     "read_record",
     "read_result",
     "read_truth",
+    "require_sound",
     "row",
     "summarise",
     "versions",

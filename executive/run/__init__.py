@@ -23,6 +23,7 @@ from executive.run.instrument import (
     Setting,
     TreeParts,
 )
+from executive.run.kept_files import changes
 from executive.run.resolved import ResolvedScenario
 from executive.run.targets import Named, strange_nodes, strange_strategies, strange_values
 
@@ -42,6 +43,7 @@ __all__ = [
     "Schema",
     "Setting",
     "TreeParts",
+    "changes",
     "every_fault",
     "load_fault",
     "strange_nodes",

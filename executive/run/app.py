@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -54,6 +55,8 @@ class RunOptions:
     bar: bool = True
     force: bool = True
     """Whether a folder that holds a run already is written over."""
+    alone: bool = False
+    """Whether the folder is refused while another process writes a run into it."""
     report: bool = True
     """Whether `report.html` is written; `longarm report` can do it later."""
 
@@ -91,7 +94,7 @@ def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     if not options.force:
         refuse_used(folder)
     make_folder(folder)
-    with locked(folder):
+    with locked(folder) if options.alone else nullcontext():
         return _written(scenario, strategies, folder, watch, options, made)
 
 

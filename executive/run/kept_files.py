@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import shutil
+import sysconfig
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,8 @@ from executive.tree.spec import TreeSpec, walk
 from executive.tree.strategies import load_strategies, strategy_trees
 
 FILES, MANIFEST, BESIDE = "files", "manifest.json", "installed"
+STRATEGY = "tree of a strategy"
+_PACKAGES = {Path(sysconfig.get_path(kind)) for kind in ("purelib", "platlib")}
 MOST_BYTES = 8 * 2**20
 """A larger file is not copied; its hash alone is kept."""
 
@@ -32,9 +34,8 @@ def keep_files(scenario: ResolvedScenario, folder: Path) -> str:
     Wherever the files lie, the text is the same: it is part of the record.
     """
     target = folder / FILES
-    shutil.rmtree(target, ignore_errors=True)
-    used = dict(_used(scenario))
-    own = [path for path in used if not path.is_relative_to(INSTALLED) and _is_small(path)]
+    used = _first_roles(_used(scenario))
+    own = [path for path, role in used.items() if role != STRATEGY and _is_own(path)]
     root = Path(os.path.commonpath([path.parent for path in own])) if own else Path()
     listing, kept = [], {}
     for path, role in used.items():
@@ -42,11 +43,11 @@ def keep_files(scenario: ResolvedScenario, folder: Path) -> str:
         if path in own:
             copied = f"{FILES}/{path.relative_to(root).as_posix()}"
             kept[str(path)] = copied
-        elif path.is_relative_to(INSTALLED) and _is_small(path):
-            copied = f"{FILES}/{BESIDE}/{path.relative_to(INSTALLED).as_posix()}"
+        elif _is_small(path):
+            copied = f"{FILES}/{BESIDE}/{path.parent.name}/{path.name}"
         if copied is not None:
             (folder / copied).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(path, folder / copied)
+            write_whole(folder / copied, path.read_bytes())
         listing.append(_entry(path, role, copied))
     for path in scenario.project.paths if scenario.project else ():
         if path.is_relative_to(root):  # a folder that the project file names must be there
@@ -71,11 +72,30 @@ def _used(scenario: ResolvedScenario) -> Iterator[tuple[Path, str]]:
     if scenario.project is not None:
         yield scenario.project.file, "project file"
         yield from ((plugin, "plug-in") for plugin in scenario.project.plugins)
+        yield from ((path, "module") for plugin in scenario.project.plugins for path in _beside(plugin))
+    yield from ((path, "tree") for path in _files_of(scenario.tree))
+    home = scenario.project.file.parent if scenario.project else None
     with in_project(scenario.project):
-        trees = [scenario.tree, *strategy_trees(load_strategies(), scenario.instead).values()]
-    for tree in trees:
-        yield from ((path, "tree") for path in _files_of(tree))
+        trees = strategy_trees(load_strategies(), scenario.instead)
+    for path in (path for tree in trees.values() for path in _files_of(tree)):
+        # a plug-in brings its own along, wherever the run lies; a project is copied with it
+        yield path, "tree" if home is not None and path.is_relative_to(home) else STRATEGY
     yield from ((path, "data") for path in _paths_in(scenario.world.model_dump(mode="json")))
+
+
+def _beside(plugin: Path) -> Iterator[Path]:
+    """The modules and packages that a plug-in file can import from its own folder."""
+    yield from sorted(plugin.parent.glob("*.py"))
+    for package in sorted(path.parent for path in plugin.parent.glob("*/__init__.py")):
+        yield from sorted(package.rglob("*.py"))
+
+
+def _first_roles(used: Iterator[tuple[Path, str]]) -> dict[Path, str]:
+    """Each file with the role in which it is come by first."""
+    roles: dict[Path, str] = {}
+    for path, role in used:
+        roles.setdefault(path, role)
+    return roles
 
 
 def _files_of(tree: TreeSpec) -> Iterator[Path]:
@@ -92,6 +112,12 @@ def _paths_in(data: Any) -> Iterator[Path]:
             yield from _paths_in(each)
     elif isinstance(data, str) and os.path.isabs(data) and Path(data).is_file():
         yield Path(data)
+
+
+def _is_own(path: Path) -> bool:
+    """Whether a file must be copied to be found again: it came neither with Longarm nor with a package."""
+    installed = any(path.is_relative_to(each) for each in (INSTALLED, *_PACKAGES))
+    return not installed and _is_small(path)
 
 
 def _is_small(path: Path) -> bool:

@@ -49,7 +49,8 @@ def run_task(data: dict[str, Any]) -> Task:
     with TemporaryDirectory(prefix="longarm-") as folder:
         case = Case.from_json(data | {"folder": folder})
         ending = run_alone(server, case)
-        return ending.to_json(), {path.name: path.read_bytes() for path in Path(folder).iterdir()}
+        written = (path for path in Path(folder).rglob("*") if path.is_file())
+        return ending.to_json(), {str(path.relative_to(folder)): path.read_bytes() for path in written}
 
 
 class _Cluster:
@@ -91,6 +92,7 @@ def _ending(case: Case, attempt: int, future: Any) -> Ending:
         return Ending(case, CaseClass.INFRASTRUCTURE, "killed", lost, attempts=attempt)
     told, files = future.result()
     for name, content in files.items():
+        (case.folder / name).parent.mkdir(parents=True, exist_ok=True)
         (case.folder / name).write_bytes(content)
     return replace(Ending.from_json(told), case=case, attempts=attempt)
 

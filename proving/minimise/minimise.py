@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import yaml
 
-from executive.record.integrity import require_sound
+from executive.record import require_sound
 from executive.report.figure import counted
 from executive.run.resolve import resolve_scenario
 from proving.engine.server import ForkServer

@@ -83,6 +83,7 @@ tier: geometric
 seed: 1
 time_limit: 10 min
 mission: {mission: voted, tree: vote, waypoints: [{x: 2.2 m, y: -0.5 m}, {x: 2.4 m, y: -0.5 m}]}
+expect: {outcome: safe_hold}
 """
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from executive.core.arrival import radius_m
 from executive.core.ports import Action, LocaliseRequest
 from executive.core.types import Localisation, Outcome, Point, PoseEstimate, Quality, Reason
-from executive.core.values import LENGTH, NUMBER, POINT, QUALITY
+from executive.core.values import LENGTH, NUMBER, POINT, POSE, QUALITY
 from executive.navigation import guidance
-from executive.tree.nodes.base import In
+from executive.tree.nodes.base import In, InOut
 from executive.tree.nodes.localise import Localise
 
 ENOUGH = 0.35
@@ -23,6 +23,7 @@ class MeasureArrival(Localise):
     """
 
     quality = In[Quality](QUALITY, "trend, precise or far", default=Quality.FAR)
+    pose = InOut[PoseEstimate](POSE, "the pose, as measured and predicted")
     target = In[Point](POINT, "the centre of the zone")
     within = In[float](LENGTH, "radius of the zone")
     share = In[float](NUMBER, "share of the radius within which it is asked", default=0.6)

@@ -39,6 +39,7 @@ WAITS: dict[str, tuple[dict[str, Any], float, Reason]] = {
     "drive_blind": ({"target": AHEAD}, drive_s(0.2), Reason.DEVICE),
     "drive_leg": ({"target": AHEAD}, drive_s(0.1), Reason.DEVICE),
     "turn_towards": ({"target": ASIDE}, drive_s(math.pi * 0.125 / 2), Reason.DEVICE),
+    "measure_arrival": ({"target": START, "within": 0.001}, 5 + 900 + 300, Reason.TIMEOUT),
     "call_for_help": ({}, 6 * 3600, Reason.NO_STRATEGY),
 }
 """Each leaf that waits: its ports, the longest it may take [s], and what it then ends with."""
