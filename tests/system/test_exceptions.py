@@ -281,6 +281,8 @@ def test_an_interrupted_command_still_reports_and_says_by_which_signal(
     result = json.loads(capsys.readouterr().out)
     assert (result["outcome"], result["reason"]) == ("safe_hold", "interrupted by the operator")
     assert {path.name for path in (folder / "out").iterdir()} == {
+        "files",
+        "sums.json",
         "scenario.yaml",
         "record.mcap",
         "result.json",
