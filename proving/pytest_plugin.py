@@ -82,7 +82,7 @@ class ScenarioItem(pytest.Item):
         )
         row = tested(self.collected, run_alone(_server(self.config), case_of(self.collected, options)))
         if row.verdict.word is Word.EXPECTED_FAILURE:
-            pytest.xfail(row.verdict.message)
+            pytest.xfail(row.verdict.message)  # the scenario itself says `expected_to_fail`, and why
         if not row.verdict.good:
             told = (f"{row.verdict.word}: {row.verdict.message}", f"repeat: {row.repeat}")
             raise ScenarioNotGood("\n".join((*told, f"run folder: {row.folder}")))

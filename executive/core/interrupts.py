@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -53,6 +54,4 @@ def held_back() -> Iterator[None]:
 
 def _can_handle() -> bool:
     """Only the main thread may say what becomes of signals."""
-    import threading
-
     return threading.current_thread() is threading.main_thread()

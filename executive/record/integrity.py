@@ -46,8 +46,7 @@ def damage(record: Path) -> Iterator[str]:
     content = record.read_bytes()
     if len(content) != size:
         yield f"it has {len(content)} bytes, {size} were written"
-    found = _sums(content)
-    if found["sha256"] == sha256:
+    if hashlib.sha256(content).hexdigest() == sha256:
         return
     wrong = [i for i, (a, b) in enumerate(zip(_blocks(content), blocks, strict=False)) if a != b]
     for block in wrong[:3]:

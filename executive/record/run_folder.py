@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import fcntl
+import os
 import shutil
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from executive.core.errors import ConfigError, Problem
 from executive.record.integrity import SUMS
@@ -33,16 +35,25 @@ def locked(folder: Path) -> Iterator[None]:
 
     The lock goes with the process, however that ends.
     """
-    with (folder / LOCK).open("w") as lock:
+    path = folder / LOCK
+    with path.open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            mine = _is_at(path, lock)
         except OSError:
+            mine = False
+        if not mine:
             message = f"got {folder}, where another run is being written, expected a folder of its own"
-            raise ConfigError([Problem("--out", 1, 1, message)]) from None
+            raise ConfigError([Problem("--out", 1, 1, message)])
         try:
             yield
         finally:
-            (folder / LOCK).unlink(missing_ok=True)
+            path.unlink(missing_ok=True)
+
+
+def _is_at(path: Path, file: IO[str]) -> bool:
+    """Whether an open file is still the one at this path: its last owner may have removed it meanwhile."""
+    return path.exists() and os.path.samestat(path.stat(), os.fstat(file.fileno()))
 
 
 def make_folder(folder: Path) -> None:
@@ -57,12 +68,11 @@ def write_traceback(folder: Path, defect: BaseException) -> None:
     (folder / "traceback.txt").write_text("".join(traceback.format_exception(defect)))
 
 
-def unwrite(folder: Path, made: bool) -> None:
+def unwrite(folder: Path) -> None:
+    """Remove all that a run writes."""
     for name in RUN_FILES:
         (folder / name).unlink(missing_ok=True)
     shutil.rmtree(folder / "files", ignore_errors=True)
-    if made and not any(folder.iterdir()):
-        folder.rmdir()
 
 
 def free_folder(parent: Path, name: str) -> Path:

@@ -91,11 +91,15 @@ def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     watch = Stopwatch()
     folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
-    if not options.force:
-        refuse_used(folder)
     make_folder(folder)
-    with locked(folder) if options.alone else nullcontext():
-        return _written(scenario, strategies, folder, watch, options, made)
+    try:
+        with locked(folder) if options.alone else nullcontext():
+            if not options.force:
+                refuse_used(folder)
+            return _written(scenario, strategies, folder, watch, options)
+    finally:
+        if made and not any(folder.iterdir()):
+            folder.rmdir()
 
 
 def _written(
@@ -104,9 +108,8 @@ def _written(
     folder: Path,
     watch: Stopwatch,
     options: RunOptions,
-    made: bool,
 ) -> Finished:
-    """The run, written into a folder that is this process's own; `made` for it."""
+    """The run, written into a folder that is this process's own."""
     for stale in RUN_FILES:
         (folder / stale).unlink(missing_ok=True)
     text = keep_files(scenario, folder)
@@ -115,7 +118,7 @@ def _written(
         with one_thread():
             end = _execute(scenario, strategies, folder, text, watch, options.bar)
     except LongarmError:
-        unwrite(folder, made)  # what a user can mend leaves nothing half-written behind
+        unwrite(folder)  # what a user can mend leaves nothing half-written behind
         raise
     if end.defect is not None:
         write_traceback(folder, end.defect)

@@ -7,6 +7,7 @@ event of the record while the run goes on, and judges the records afterwards. Re
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, MutableMapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -116,7 +117,7 @@ class Judgement:
     met: bool | None = None
 
 
-class InstrumentSpec(Generic[S]):
+class InstrumentSpec(ABC, Generic[S]):
     """A kind of instrument; `S` is what its keys of a scenario come to. Override what it does.
 
     Everything that is given a source is given the instrument's own keys alone, each where its file has it.
@@ -135,9 +136,9 @@ class InstrumentSpec(Generic[S]):
         """The source with short forms written out."""
         return source
 
+    @abstractmethod
     def read(self, source: Source, setting: Setting) -> S:
         """What the keys say, all defaults where nothing is said; ConfigError with every problem."""
-        raise NotImplementedError
 
     def check(
         self, source: Source, settings: Mapping[str, object], tree: TreeSpec | None

@@ -44,7 +44,7 @@ def keep_files(scenario: ResolvedScenario, folder: Path) -> str:
             copied = f"{FILES}/{path.relative_to(root).as_posix()}"
             kept[str(path)] = copied
         elif _is_small(path):
-            copied = f"{FILES}/{BESIDE}/{path.parent.name}/{path.name}"
+            copied = f"{FILES}/{BESIDE}/{path.parent.parent.name}/{path.parent.name}/{path.name}"
         if copied is not None:
             (folder / copied).parent.mkdir(parents=True, exist_ok=True)
             write_whole(folder / copied, path.read_bytes())
@@ -145,7 +145,7 @@ def _changed(folder: Path, entry: Mapping[str, Any]) -> str:
         return f"{what}: it is another file"
     then = (folder / entry["copy"]).read_text(errors="replace").splitlines()
     now = today.read_text(errors="replace").splitlines()
-    same = next(
-        (i for i, (a, b) in enumerate(zip(then, now, strict=False)) if a != b), min(len(then), len(now))
-    )
-    return f"{what}: line {same + 1}"
+    pairs = enumerate(zip(then, now, strict=False))
+    shorter = min(len(then), len(now))
+    line = next((number for number, (a, b) in pairs if a != b), shorter)
+    return f"{what}: line {line + 1}"

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from executive.cli import invoke
+from executive.core.errors import LongarmError
 from executive.record.reader import is_complete, read_record
 from executive.record.verify import verify
 from tests.system.bench import Setting
@@ -101,6 +102,17 @@ def test_a_folder_with_a_run_is_written_over_only_by_force(
     assert "is not empty, expected a new folder, or --force" in capsys.readouterr().err
     assert invoke(["verify-record", out]) == 0
     assert invoke(["run", str(scenario), "--quiet", "--out", out, "--force"]) == 0
+
+
+def test_a_run_that_cannot_begin_leaves_no_folder(
+    scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*given: object) -> None:
+        raise LongarmError("no such robot here")
+
+    monkeypatch.setattr("executive.run.app.set_up", refused)
+    assert invoke(["run", str(scenario), "--quiet", "--out", str(tmp_path / "out")]) == 2
+    assert not (tmp_path / "out").exists()
 
 
 def test_of_two_runs_into_one_folder_the_second_is_refused(scenario: Path, tmp_path: Path) -> None:

@@ -58,10 +58,7 @@ class Explanation:
     def as_json(self) -> dict[str, object]:
         """Plain data for `--json`."""
         return {
-            **{
-                key: getattr(self, key)
-                for key in ("scenario", "seed", "sentence", "outcome", "reason", "at_s", "end_s")
-            },
+            **{key: getattr(self, key) for key in _HEAD},
             "chain": [_link(link) for link in self.chain],
             "failure": [_link(link) for link in self.failure],
             "pose": None if self.pose is None else _pose(self.pose),
