@@ -10,6 +10,8 @@ MISSION ?= missions/first_traverse.yaml
 # Warnings of pip (of a mirror, of a cache) say nothing about this project; its errors do come through.
 PIP := $(BIN)/python -m pip --quiet --quiet --disable-pip-version-check
 SAY := @printf 'longarm: %s\n'
+# Where modules may not be kept compiled, every process compiles all of them anew, and takes twice as long to start.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run test lint types imports check wheel lock clean
 .DEFAULT_GOAL := run

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import tifffile
-from scipy.interpolate import RectBivariateSpline
 
 from executive.core.types import Array, Vec2
 from sim_pybullet.procedural import fractal, levelled
@@ -112,6 +111,8 @@ def cut(
     `lander_m` is the lander's place from the window's lower left corner, in model metres; by default 2 m in,
     half way up. `scale` enlarges all three axes alike. TerrainError if the window leaves the model.
     """
+    from scipy.interpolate import RectBivariateSpline  # a second, which a check of a scenario should not wait
+
     w = window_on(model, window)
     size = model.size_m
     lander = lander_m or default_lander_m(w)

@@ -22,10 +22,8 @@ from sim_pybullet.rocks import obstacle, scatter
 from sim_pybullet.scene import Rock
 from sim_pybullet.shape import belt
 from sim_pybullet.soil import Patch, SoilMap
-from sim_pybullet.terrain import Area, Terrain, area_of, require_cover
+from sim_pybullet.terrain import CELL_M, ROUTE_MARGIN_M, Area, Terrain, area_of, require_cover
 
-CELL_M = 0.03
-ROUTE_MARGIN_M = 0.5  # the rover and its noses stay on the ground even at the edge of the margin
 ROCK_MARGIN_M = 1.5
 HEADING_SPREAD_RAD = math.radians(10.0)
 SPAWN_GAP_M = 0.002

@@ -17,6 +17,9 @@ from executive.core.types import (
     Vec3,
 )
 
+CELL_M = 0.03
+ROUTE_MARGIN_M = 0.5  # the rover and its noses stay on the ground even at the edge of the margin
+
 
 class TerrainError(LongarmError):
     """The ground asked for cannot be made, or does not cover what is asked of it."""

@@ -14,8 +14,7 @@ from executive.core.rig import RoverCalibration
 from executive.core.types import Segment, Vec2
 from sim_pybullet.config import ObstacleConfig, ProceduralConfig, TerrainConfig, WorldConfig
 from sim_pybullet.elevation_model import Window, default_lander_m, read_model, window_on
-from sim_pybullet.site import CELL_M, ROUTE_MARGIN_M
-from sim_pybullet.terrain import TerrainError, points_outside
+from sim_pybullet.terrain import CELL_M, ROUTE_MARGIN_M, TerrainError, points_outside
 
 TERRAIN: Place = ("terrain",)
 

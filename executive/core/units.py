@@ -19,11 +19,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BeforeValidator, PlainSerializer, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from executive.core.common_units import COMMON, Dimension
+
 if TYPE_CHECKING:
     import pint
-
-Dimension = tuple[tuple[str, int], ...]
-"""Exponents of root units, sorted by name: a speed is (("meter", 1), ("second", -1)). Angle counts as one."""
 
 NUMBER_TEXT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 UNIT_TEXT = r"(?:%|°|[A-Za-zµ]{1,20}(?:\^?-?\d)?(?:[/*][A-Za-zµ]{1,20}(?:\^?-?\d)?){0,3})"
@@ -79,7 +78,7 @@ KINDS: tuple[Kind, ...] = (
 
 @cache
 def _registry() -> pint.UnitRegistry[Any]:
-    """Half a second to make, so only when a file first names a unit."""
+    """Half a second to make, so only when a file first names a unit that is not a common one."""
     import pint
 
     return pint.UnitRegistry()
@@ -92,6 +91,11 @@ def factor(unit: str) -> tuple[Decimal, Dimension]:
         return Decimal(1), PLAIN
     if unit == "%":
         return Decimal("0.01"), PLAIN
+    return COMMON.get(unit) or looked_up(unit)
+
+
+def looked_up(unit: str) -> tuple[Decimal, Dimension]:
+    """What pint's table says of a unit; UnitError if there is no such unit."""
     try:
         one = _registry().Quantity(1, _registry().parse_units(unit)).to_root_units()
         if unit in {"degC", "degF", "delta_degC"}:

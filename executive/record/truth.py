@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation, Slerp
 
 from executive.core.corridor import distances_m
 from executive.core.types import Array, PoseEstimate, Segment
 from executive.record.events import SegmentEvent, TruthEvent
 from executive.record.history import At, History
+
+if TYPE_CHECKING:  # half a second that only those who ask for an attitude should wait
+    from scipy.spatial.transform import Rotation
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +47,8 @@ class Track:
 
     def rotation(self, time_s: float) -> Rotation:
         """True attitude, body to site, at a time: exact at a sample, turned evenly between two."""
+        from scipy.spatial.transform import Rotation, Slerp
+
         i = int(np.searchsorted(self.time_s, time_s))
         if i == len(self.time_s):
             return Rotation.from_quat(self.quat_site_body[-1])
@@ -115,6 +120,8 @@ class PoseError:
     @classmethod
     def of(cls, track: Track, pose: PoseEstimate) -> PoseError:
         """R_true = exp(rotation) R_estimate; NEES over all six components, expected 6 if consistent."""
+        from scipy.spatial.transform import Rotation
+
         position = track.position(pose.time_s) - np.array(pose.position_site_m)
         rotation = track.rotation(pose.time_s) * Rotation.from_quat(pose.quat_site_body).inv()
         error = np.concatenate([position, rotation.as_rotvec()])

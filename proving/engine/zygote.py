@@ -20,7 +20,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from executive.core import registry, units
+from executive.core import registry
 from executive.core.clock import Stopwatch
 from executive.core.errors import LongarmError
 from executive.tree.strategies import load_strategies, strategy_trees
@@ -179,7 +179,6 @@ def _preload() -> None:
                 preload()
     with suppress(LongarmError):
         strategy_trees(load_strategies())
-    units.factor("m")  # half a second the first time
 
 
 def main() -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from executive.config.validate import guess, listed
 from executive.core import units
-from executive.core.units import Dimension
+from executive.core.common_units import Dimension
 from executive.core.values import ValueType, attribute_of
 
 Read = Callable[[str, tuple[str, ...]], Any]

@@ -7,7 +7,13 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, Field, ValidationError
 
 from executive.core import units
+from executive.core.common_units import COMMON
 from executive.core.units import UnitError
+
+
+@pytest.mark.parametrize("unit", COMMON)
+def test_a_common_unit_is_what_the_table_of_all_units_says(unit):
+    assert units.factor(unit) == COMMON[unit] == units.looked_up(unit)
 
 
 @pytest.mark.parametrize(
