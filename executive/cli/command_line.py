@@ -308,6 +308,20 @@ def init(folder: Path, force: bool, schemas: bool) -> int:
 
 
 @cli.command()
+@click.option("-o", "--output", type=FILE, default=Path("docs/reference"), show_default=True)
+def reference(output: Path) -> int:
+    """Write the reference from the declarations, those of plug-ins included: one Markdown page a subject.
+
+    Example: longarm reference -o reference
+    """
+    from executive.cli.reference import write_pages
+
+    for path in write_pages(output):
+        click.echo(path)
+    return 0
+
+
+@cli.command()
 @click.argument("kind")
 def schema(kind: str) -> int:
     """Print the JSON Schema of a kind of file, for editors: tree, mission, scenario or campaign.

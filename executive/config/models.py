@@ -19,30 +19,34 @@ Margin = Annotated[Length, Field(gt=0)]
 class Margins(Strict):
     """Margins of every segment that does not say otherwise (paper, section 3.1)."""
 
-    on_track: Margin = 0.030
-    off_track: Margin = 0.250
-    tolerance: Margin = 0.030
+    on_track: Annotated[Margin, Field(description="beside the line; within it nothing is corrected")] = 0.030
+    off_track: Annotated[Margin, Field(description="beside the line; beyond it nothing is driven")] = 0.250
+    tolerance: Annotated[Margin, Field(description="radius of the zone that counts as reached")] = 0.030
 
 
 class Waypoint(Strict):
     """A point of the path in `site`; its margins are those of the segment that ends here."""
 
-    x: Length
-    y: Length
-    on_track: Margin | None = None
-    off_track: Margin | None = None
-    tolerance: Margin | None = None
+    x: Annotated[Length, Field(description="away from the lander")]
+    y: Annotated[Length, Field(description="to the left, seen from the lander")]
+    on_track: Annotated[Margin | None, Field(description="instead of the mission's")] = None
+    off_track: Annotated[Margin | None, Field(description="instead of the mission's")] = None
+    tolerance: Annotated[Margin | None, Field(description="instead of the mission's")] = None
 
 
 class MissionFile(Strict):
     """What ground uplinks: way-points with margins, and the tree that runs them."""
 
-    mission: Name
-    doc: str = ""
-    tree: Name = "navigate"
-    segments: Margins = Margins()
-    waypoints: Annotated[tuple[Waypoint, ...], Field(min_length=2)]
-    tree_inputs: dict[str, Any] = Field(default_factory=dict)
+    mission: Annotated[Name, Field(description="its name")]
+    doc: Annotated[str, Field(description="a sentence for people")] = ""
+    tree: Annotated[Name, Field(description="the tree that runs it: a path or a bare name")] = "navigate"
+    segments: Annotated[Margins, Field(description="the margins of every segment")] = Margins()
+    waypoints: Annotated[
+        tuple[Waypoint, ...], Field(min_length=2, description="the path; the first is where the rover starts")
+    ]
+    tree_inputs: Annotated[
+        dict[str, Any], Field(description="values for further ports of the tree, by name")
+    ] = Field(default_factory=dict)
 
     def margins(self, index: int) -> Margins:
         """The margins of the segment that ends at way-point `index`."""
@@ -84,17 +88,24 @@ class ScenarioFile(Strict):
     `project` names the project file where it is not that beside the scenario or above it.
     """
 
-    scenario: Name
-    doc: str = ""
-    project: Annotated[str, Field(min_length=1)] | None = None
+    scenario: Annotated[Name, Field(description="its name")]
+    doc: Annotated[str, Field(description="a sentence for people")] = ""
+    project: Annotated[
+        Annotated[str, Field(min_length=1)] | None,
+        Field(description="a project file, where it is not that beside the scenario or above it"),
+    ] = None
     mission: MissionFile
-    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    tier: Name | None = None
-    backend: Name = "pybullet"
+    seed: Annotated[int, Field(ge=0, lt=2**63, description="what all chance is drawn from")] = 0
+    tier: Annotated[Name | None, Field(description="how finely to simulate; else the backend's first")] = None
+    backend: Annotated[Name, Field(description="the robot, see `longarm backends`")] = "pybullet"
     localizer: Any = DEFAULT_LOCALIZER
     policy: Annotated[
         Name | None, Field(description="how the pool chooses among strategies (default first_fitted)")
     ] = None
-    world: dict[str, Any] = Field(default_factory=dict)
-    rig: dict[str, Any] = Field(default_factory=dict)
-    time_limit: Annotated[Duration, Field(gt=0)] = 24 * 3600.0
+    world: Annotated[dict[str, Any], Field(description="what the backend's world may say")] = Field(
+        default_factory=dict
+    )
+    rig: Annotated[dict[str, Any], Field(description="what the robot has otherwise than as built")] = Field(
+        default_factory=dict
+    )
+    time_limit: Annotated[Duration, Field(gt=0, description="of mission time")] = 24 * 3600.0

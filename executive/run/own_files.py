@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import copy
+import json
 from enum import Enum
 from typing import Any
 
+from executive.config.backends import BACKEND_KIND, BackendSpec
 from executive.config.file_kinds import FileKind
 from executive.config.localizers import LOCALIZER_KIND
 from executive.config.models import DEFAULT_LOCALIZER, MissionFile, ScenarioFile
 from executive.config.project import ProjectFile, project_in
+from executive.config.rig_overrides import model_of
 from executive.config.source import Source
 from executive.core import registry
+from executive.core.registry import current_project
 from executive.core.values import VALUE_TYPE_KIND
 from executive.run.instruments import instruments_there_are
 from executive.run.resolve import as_scenario, resolve
@@ -45,7 +49,29 @@ def _scenario() -> dict[str, Any]:
     made["properties"]["localizer"] = _localizer(made["$defs"])
     for spec in instruments_there_are():
         made["properties"] |= spec.schema(made["$defs"])
+    made["allOf"] = [_of_backend(name, spec, made["$defs"]) for name, spec in _backends()]
     return made
+
+
+def _backends() -> list[tuple[str, BackendSpec]]:
+    return list(registry.every(BACKEND_KIND).items())
+
+
+def _of_backend(name: str, spec: BackendSpec, shared: dict[str, Any]) -> dict[str, Any]:
+    """What `world` and `rig` may say under a backend; without `backend`, the project's default is meant."""
+    project = current_project()
+    usual = (project.defaults if project else {}).get("backend", ScenarioFile.model_fields["backend"].default)
+    then = {}
+    for key, model in (("world", spec.world_model), ("rig", model_of(spec.rig))):
+        own = model.model_json_schema(by_alias=True)
+        own = json.loads(json.dumps(own).replace("#/$defs/", f"#/$defs/{name}."))
+        shared.update({f"{name}.{part}": inner for part, inner in own.pop("$defs", {}).items()})
+        shared[f"{name}.{key}"] = own
+        then[key] = {"$ref": f"#/$defs/{name}.{key}"}
+    named: dict[str, Any] = {"properties": {"backend": {"const": name}}}
+    if name != usual:
+        named["required"] = ["backend"]
+    return {"if": named, "then": {"properties": then}}
 
 
 def _localizer(shared: dict[str, Any]) -> dict[str, Any]:

@@ -117,6 +117,7 @@ class Bench:
         try:
             while ticks < at_most:
                 ticks += 1
+                self.services.classification.tracker.sense(self.services.devices)  # as the runner does
                 tree.root.tick_once()
                 if tree.root.status is not Status.RUNNING:
                     break
