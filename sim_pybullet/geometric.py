@@ -22,7 +22,7 @@ from sim_pybullet.exposing import full_windows
 from sim_pybullet.ground_marks import GroundMarks, nothing_seen
 from sim_pybullet.leds import MarkerOptics, Spot
 from sim_pybullet.outline_model import Outline
-from sim_pybullet.projection import View, scene_views
+from sim_pybullet.projection import PlacedCamera, scene_views
 from sim_pybullet.radiometry import Exposure, spread_reach_px
 from sim_pybullet.raycast import HeightField
 from sim_pybullet.scene import SceneState
@@ -75,7 +75,7 @@ class CentreDeveloper:
                 uv_px[camera, index], sigma_px[camera, index] = centre, sigma
         return Centres(time_s, shot, uv_px, sigma_px, head, saturated=self._full(shot, scenes))
 
-    def _exposed(self, scene: SceneState, view: View, shot: Shot) -> Exposure:
+    def _exposed(self, scene: SceneState, view: PlacedCamera, shot: Shot) -> Exposure:
         return self._exposure.under((scene.seeing.light + view.lens.veil) * shot.exposure)
 
     def _full(self, shot: Shot, scenes: tuple[SceneState, ...]) -> tuple[bool, bool]:
@@ -139,7 +139,7 @@ class CentreDeveloper:
             for led in scene.seeing.wiring[: len(spots)]
         ]
 
-    def _brightest(self, scene: SceneState, view: View, window: Window) -> list[Spot]:
+    def _brightest(self, scene: SceneState, view: PlacedCamera, window: Window) -> list[Spot]:
         """Of each LED and its reflections in the window, the one that a detector would take for it."""
         spots = self._optics.spots(scene, view)
         for led, glint in self._optics.glints(scene, view):
@@ -189,7 +189,7 @@ def _within(spot: Spot, window: Window) -> bool:
     )
 
 
-def steady(scenes: tuple[SceneState, ...], view: View) -> bool:
+def steady(scenes: tuple[SceneState, ...], view: PlacedCamera) -> bool:
     """Whether the frames of a shot show one scene: the same light, from a head that stands still."""
     light = np.array([scene.seeing.light for scene in scenes])
     head = np.array([(scene.head_pan_rad, scene.head_tilt_rad) for scene in scenes])

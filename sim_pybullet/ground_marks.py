@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from executive.core.types import Array, Landmarks, Window
-from sim_pybullet.projection import View
+from sim_pybullet.projection import PlacedCamera
 from sim_pybullet.raycast import HeightField
 
 SPACING_M, REACH_M, NEAREST_M = 0.15, 5.0, 0.8
@@ -27,7 +27,7 @@ class GroundMarks:
         self._points_site_m: Array = np.stack([x_m, y_m, field.height(x_m, y_m)], axis=1).astype(np.float64)
         self._names = rng.permutation(len(x_m))
 
-    def seen(self, view: View, window: Window, rover_site_m: Array) -> Landmarks:
+    def seen(self, view: PlacedCamera, window: Window, rover_site_m: Array) -> Landmarks:
         """Those that a camera shows in its window and the rover at (3,) does not hide, with noise."""
         uv_px, depth_m = view.project(self._points_site_m)
         rover_px, rover_depth_m = view.project(rover_site_m)

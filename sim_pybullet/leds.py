@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from executive.core.rig import RigCalibration
 from executive.core.types import Array, Window
-from sim_pybullet.projection import View
+from sim_pybullet.projection import PlacedCamera
 from sim_pybullet.radiometry import MarkerLight, emission_factor, pixel_spread, spread_sigma_px
 from sim_pybullet.raycast import HeightField
 from sim_pybullet.scene import Box, Rock, SceneState, screens
@@ -38,15 +38,15 @@ class MarkerOptics:
         self.rig, self._light, self._field = rig, light, field
         self._boxes = rover_boxes(rig)
 
-    def spots(self, scene: SceneState, view: View) -> list[Spot]:
+    def spots(self, scene: SceneState, view: PlacedCamera) -> list[Spot]:
         """What each marker would be in this view if it were lit, in order of index."""
         return [self._spot(index, scene, view) for index in range(len(self.rig.markers.positions_plc_m))]
 
-    def glints(self, scene: SceneState, view: View) -> list[tuple[int, Spot]]:
+    def glints(self, scene: SceneState, view: PlacedCamera) -> list[tuple[int, Spot]]:
         """The reflections in this view, each with the LED that it shines with, if that were lit."""
         return [(glint.led, self._glint(glint, scene, view)) for glint in scene.seeing.glints]
 
-    def _glint(self, glint: Glint, scene: SceneState, view: View) -> Spot:
+    def _glint(self, glint: Glint, scene: SceneState, view: PlacedCamera) -> Spot:
         T = scene.T_site_body
         position = T[:3, :3] @ np.array(glint.position_body_m) + T[:3, 3]
         led = self._spot(glint.led, scene, view)
@@ -55,7 +55,7 @@ class MarkerOptics:
         electrons = glint.strength * led.electrons if seen else 0.0
         return replace(led, u_px=float(uv[0]), v_px=float(uv[1]), electrons=electrons)
 
-    def _spot(self, index: int, scene: SceneState, view: View) -> Spot:
+    def _spot(self, index: int, scene: SceneState, view: PlacedCamera) -> Spot:
         T = scene.T_site_plc
         position = T[:3, :3] @ np.array(self.rig.markers.positions_plc_m[index]) + T[:3, 3]
         uv, depth = view.project(position)

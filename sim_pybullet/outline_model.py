@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from executive.core.types import Array, Window
-from sim_pybullet.projection import View
+from sim_pybullet.projection import PlacedCamera
 from sim_pybullet.scene import SceneState
 
 # range [m], error of a marker's place [px], root mean square an axis: near by, pixels are binned
@@ -21,7 +21,7 @@ LEAST_LIGHT, MOST_BLUR_PX = 0.2, 1.0
 _FOOTPRINT_BODY_M = np.array([(x, y, 0.0) for x in (-0.17, 0.17) for y in (-0.08, 0.08)])
 
 
-Views = tuple[View, View]
+Views = tuple[PlacedCamera, PlacedCamera]
 
 
 class Outline:
@@ -52,7 +52,7 @@ def clear(scene: SceneState) -> bool:
     return seeing.light >= LEAST_LIGHT and not blurred and not seeing.screens
 
 
-def _whole(scene: SceneState, view: View, window: Window) -> bool:
+def _whole(scene: SceneState, view: PlacedCamera, window: Window) -> bool:
     """Whether the rover's footprint is in the window; what stands on it needs no more room."""
     T = scene.T_site_body
     corners_px, _ = view.project(_FOOTPRINT_BODY_M @ T[:3, :3].T + T[:3, 3])

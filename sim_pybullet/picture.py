@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from executive.core.rig import RigCalibration
 from executive.core.types import Window
 from sim_pybullet.leds import MarkerOptics, Spot, add_spot
-from sim_pybullet.projection import View, scene_views
+from sim_pybullet.projection import PlacedCamera, scene_views
 from sim_pybullet.radiometry import Exposure, calibrated_light, spread_sigma_px
 from sim_pybullet.render import TerrainRenderer
 from sim_pybullet.rocks_view import draw_rock, far_first
@@ -40,7 +40,7 @@ class Picture:
         self._markers = MarkerOptics(rig, calibrated_light(rig), self._ground.field)
         self._kept: OrderedDict[object, tuple[Image, Image]] = OrderedDict()
 
-    def view(self, scene: SceneState, camera: int) -> View:
+    def view(self, scene: SceneState, camera: int) -> PlacedCamera:
         """The camera (LEFT or RIGHT) as it truly stands."""
         return scene_views(self.rig, scene)[camera]
 
@@ -100,7 +100,9 @@ class Picture:
         """Drop the kept ground, as after a change of the world."""
         self._kept.clear()
 
-    def _ground_of(self, scene: SceneState, camera: int, view: View, window: Window) -> tuple[Image, Image]:
+    def _ground_of(
+        self, scene: SceneState, camera: int, view: PlacedCamera, window: Window
+    ) -> tuple[Image, Image]:
         lander = (scene.seeing.lander_shift_m, scene.seeing.lander_turn_rad)
         key = (scene.head_pan_rad, scene.head_tilt_rad, lander, camera, window, scene.rocks)
         if key not in self._kept:

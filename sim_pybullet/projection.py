@@ -21,7 +21,7 @@ _CAMERA_AXES_IH = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class PlacedCamera:
     """A camera somewhere in `site`: `R_site_cam` (3, 3) turns camera vectors into site."""
 
     camera: CameraCalibration
@@ -75,13 +75,13 @@ def undistort(camera: CameraCalibration, xd: Array, yd: Array) -> tuple[Array, A
     return x, y
 
 
-def head_views(rig: RigCalibration, pan_rad: float, tilt_rad: float) -> tuple[View, View]:
+def head_views(rig: RigCalibration, pan_rad: float, tilt_rad: float) -> tuple[PlacedCamera, PlacedCamera]:
     """Both cameras for these *true* readings of perfect encoders; the mast's foot is the site's origin."""
     left, right = (_view(rig, camera, pan_rad, tilt_rad) for camera in rig.cameras)
     return left, right
 
 
-def scene_views(rig: RigCalibration, scene: SceneState) -> tuple[View, View]:
+def scene_views(rig: RigCalibration, scene: SceneState) -> tuple[PlacedCamera, PlacedCamera]:
     """Both cameras as they truly stand in a scene, wherever the lander has settled to."""
     views = head_views(rig, scene.head_pan_rad, scene.head_tilt_rad)
     left, right = (
@@ -91,7 +91,7 @@ def scene_views(rig: RigCalibration, scene: SceneState) -> tuple[View, View]:
     return left, right
 
 
-def _settled(view: View, seeing: Seeing) -> View:
+def _settled(view: PlacedCamera, seeing: Seeing) -> PlacedCamera:
     if not (any(seeing.lander_shift_m) or any(seeing.lander_turn_rad)):
         return view
     turn = Rotation.from_rotvec(seeing.lander_turn_rad).as_matrix()
@@ -99,11 +99,11 @@ def _settled(view: View, seeing: Seeing) -> View:
     return replace(view, R_site_cam=turn @ view.R_site_cam, position_site_m=position)
 
 
-def _view(rig: RigCalibration, camera: CameraCalibration, pan_rad: float, tilt_rad: float) -> View:
+def _view(rig: RigCalibration, camera: CameraCalibration, pan_rad: float, tilt_rad: float) -> PlacedCamera:
     R_site_ih = _head_in_site(rig.head, pan_rad, tilt_rad)
     R_ih_cam = about_z(camera.yaw_ih_rad) @ about_y(camera.pitch_ih_rad) @ about_x(camera.roll_ih_rad)
     position = np.array([0.0, 0.0, rig.head.mast_height_m]) + R_site_ih @ np.array(camera.position_ih_m)
-    return View(camera, R_site_ih @ R_ih_cam @ _CAMERA_AXES_IH, position)
+    return PlacedCamera(camera, R_site_ih @ R_ih_cam @ _CAMERA_AXES_IH, position)
 
 
 def _head_in_site(head: HeadCalibration, pan_rad: float, tilt_rad: float) -> Array:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from executive.core.types import Array, Window
 from sim_pybullet.ground_texture import GroundTexture
-from sim_pybullet.projection import View
+from sim_pybullet.projection import PlacedCamera
 from sim_pybullet.raycast import HeightField
 from sim_pybullet.rocks_view import shade_by_rocks
 from sim_pybullet.scene import Rock
@@ -59,7 +59,7 @@ class TerrainRenderer:
         self.sun = sun
         self._light = ground_light(self._terrain, sun)
 
-    def ground(self, view: View, window: Window, rocks: tuple[Rock, ...] = ()) -> tuple[Image, Image]:
+    def ground(self, view: PlacedCamera, window: Window, rocks: tuple[Rock, ...] = ()) -> tuple[Image, Image]:
         """Radiance (h, w) of ground and sky relative to sunlit level ground, and range (h, w) [m].
 
         The rocks' shadows are in it, the rocks themselves are not: `draw_rocks` paints them, near ones over
@@ -77,7 +77,7 @@ class TerrainRenderer:
             image = image.reshape(window.height, samples, window.width).mean(axis=1)
         return image, points.range_m[::samples]
 
-    def ground_points(self, view: View, window: Window, samples: int = 1) -> GroundPoints:
+    def ground_points(self, view: PlacedCamera, window: Window, samples: int = 1) -> GroundPoints:
         """Ground points of the window's pixels, `samples` to a row."""
         u = _axis(window.u, window.width, _COARSE_U)
         v = _axis(window.v, window.height, _COARSE_V)
@@ -117,7 +117,7 @@ class TerrainRenderer:
         v = (y_m - np.float32(self._origin[1])) / np.float32(self._cell_m)
         return np.asarray(cv2.remap(self._light, u, v, cv2.INTER_LINEAR, borderValue=1.0))  # level beyond
 
-    def _samples_a_row(self, view: View, window: Window) -> int:
+    def _samples_a_row(self, view: PlacedCamera, window: Window) -> int:
         middle = view.rays(np.array([window.u + window.width / 2]), np.array([window.v + window.height / 2]))
         depth = float(self.field.cast(view.position_site_m, middle)[0])
         if not math.isfinite(depth):
@@ -135,7 +135,7 @@ def _axis(first: int, size: int, step: int) -> Array:
     return step * np.arange(begin, end + 1, dtype=np.float64)
 
 
-def _sky(view: View, window: Window) -> Image:
+def _sky(view: PlacedCamera, window: Window) -> Image:
     """A dusty sky, brightest at the horizon, as a column (h, 1)."""
     rows = window.v + np.arange(window.height, dtype=np.float64)
     rays = view.rays(np.full(window.height, window.u + window.width / 2), rows)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.types import Array, Window
-from sim_pybullet.projection import View
+from sim_pybullet.projection import PlacedCamera
 from sim_pybullet.raycast import HeightField
 from sim_pybullet.scene import Rock
 from sim_pybullet.sunlight import SKYLIGHT, Sun
@@ -28,7 +28,7 @@ def far_first(rocks: tuple[Rock, ...], from_site_m: Array) -> list[Rock]:
 
 
 def draw_rock(
-    image: Image, range_m: Image, rock: Rock, field: HeightField, sun: Sun, view: View, window: Window
+    image: Image, range_m: Image, rock: Rock, field: HeightField, sun: Sun, view: PlacedCamera, window: Window
 ) -> None:
     """Paint one rock over the image (h, w), in place; ground in front, by its range (h, w), hides it."""
     area = pixel_area(np.array([rock.centre_site_m]), rock.radius_m, view, window)
@@ -79,7 +79,7 @@ def shade_by_rocks(
     z_m: Image,
     rocks: tuple[Rock, ...],
     sun: Sun,
-    view: View,
+    view: PlacedCamera,
     window: Window,
     samples: int,
 ) -> None:
@@ -114,7 +114,7 @@ def _sunlit_beside(
 
 
 def pixel_area(
-    centres_site_m: Array, radius_m: float, view: View, window: Window
+    centres_site_m: Array, radius_m: float, view: PlacedCamera, window: Window
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
     """Rows and columns of the window that spheres of this radius about the points can touch; None if none."""
     uv, depth = view.project(centres_site_m)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from executive.core.rig import RigCalibration
 from executive.core.types import Array, Window
-from sim_pybullet.projection import View
+from sim_pybullet.projection import PlacedCamera
 from sim_pybullet.raycast import HeightField
 from sim_pybullet.rover_solids import Solid, rover_solids
 from sim_pybullet.scene import SceneState
@@ -43,7 +43,7 @@ class RoverRenderer:
         self._solids = rover_solids(rig)
         self.sun, self._field = sun, field
 
-    def shade_ground(self, image: Image, scene: SceneState, view: View, window: Window) -> None:
+    def shade_ground(self, image: Image, scene: SceneState, view: PlacedCamera, window: Window) -> None:
         """Darken the ground where the rover keeps the sun off, in place."""
         shapes = [self._shadow(_vertices(solid, scene), scene) for solid in self._solids]
         hulls = [hull for hull in (_projected_hull(view, shape) for shape in shapes) if hull is not None]
@@ -55,7 +55,7 @@ class RoverRenderer:
         shadow, _ = canvas.reduced()
         image[canvas.part] *= 1 - np.float32(1 - SKYLIGHT) * shadow
 
-    def draw(self, image: Image, scene: SceneState, view: View, window: Window) -> None:
+    def draw(self, image: Image, scene: SceneState, view: PlacedCamera, window: Window) -> None:
         """Paint the rover over the image (h, w), in place."""
         placed = [_place(solid, scene) for solid in self._solids]
         outlines = [view.project(part.vertices) for part in placed]
@@ -196,7 +196,7 @@ def _hides(front: _Placed, back: _Placed, eye: Array) -> bool:
     return False
 
 
-def _projected_hull(view: View, points: Array) -> Array | None:
+def _projected_hull(view: PlacedCamera, points: Array) -> Array | None:
     uv, depth = view.project(points)
     if (depth <= 0.05).any():
         return None

@@ -1,4 +1,4 @@
-"""Whether the ground of a scenario can be made and carries its route, told without making it."""
+"""Whether the ground of a scenario can be made and carries its route, without making it."""
 
 from __future__ import annotations
 
@@ -54,12 +54,12 @@ def _in_the_way(obstacles: tuple[ObstacleConfig, ...], route: tuple[Segment, ...
             spare_m = distance_m(segment, rock.at.x, rock.at.y) - radius_m - half_m
             where = f"obstacle {number} at ({rock.at.x:.4g} m, {rock.at.y:.4g} m)"
             if math.hypot(segment.end.x_m - rock.at.x, segment.end.y_m - rock.at.y) < radius_m:
-                told = f"got a way-point inside of {where}, which has a radius of {radius_m:.2f} m"
-                yield WorldProblem((), told, segment.index + 1)
+                message = f"got a way-point inside of {where}, which has a radius of {radius_m:.2f} m"
+                yield WorldProblem((), message, segment.index + 1)
             elif radius_m > 0.0 and spare_m < 0.0:
                 missing = f"{-spare_m:.2f} m too near for half the rover's width of {half_m:.3g} m"
-                told = f"the way here leads through {where}: {missing}"
-                yield WorldProblem((), told, segment.index + 1, warning=True)
+                message = f"the way here leads through {where}: {missing}"
+                yield WorldProblem((), message, segment.index + 1, warning=True)
 
 
 def _radius_at_ground_m(rock: ObstacleConfig) -> float:

@@ -20,7 +20,7 @@ from sim_pybullet.world import World
 
 
 @dataclass(frozen=True)
-class Tally:
+class WorldActivity:
     """What has been done so far, and what a fault may thus have shown in.
 
     Travel of both belts together [m], how far each motor turned otherwise than commanded [m], frames
@@ -32,11 +32,13 @@ class Tally:
     frames: int
     lit: tuple[int, ...]
 
-    def since(self, earlier: Tally) -> Tally:
+    def since(self, earlier: WorldActivity) -> WorldActivity:
         """What has been done between two tallies."""
         left_m, right_m = (a - b for a, b in zip(self.astray_m, earlier.astray_m, strict=True))
         lit = tuple(a - b for a, b in zip(self.lit, earlier.lit, strict=True))
-        return Tally(self.driven_m - earlier.driven_m, (left_m, right_m), self.frames - earlier.frames, lit)
+        return WorldActivity(
+            self.driven_m - earlier.driven_m, (left_m, right_m), self.frames - earlier.frames, lit
+        )
 
 
 class WorldFaults:
@@ -46,11 +48,11 @@ class WorldFaults:
         self.world = world
         self._exposures = exposures
 
-    def tally(self) -> Tally:
+    def tally(self) -> WorldActivity:
         """What has been done so far."""
         tracks = self.world.tracks
         astray_m = (tracks.motors[0].astray_m, tracks.motors[1].astray_m)
-        return Tally(tracks.driven_m, astray_m, self._exposures.frames, tuple(self._exposures.driven))
+        return WorldActivity(tracks.driven_m, astray_m, self._exposures.frames, tuple(self._exposures.driven))
 
     def set_led(self, marker: int, alive: bool) -> None:
         """Let a marker die or come back."""

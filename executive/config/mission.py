@@ -82,7 +82,7 @@ def _corner_problems(source: Source, at: Place, mission: MissionFile) -> Iterato
 
 
 def _margin_problems(source: Source, at: Place, mission: MissionFile) -> Iterator[Problem]:
-    told = set()
+    reported = set()
     for index in range(1, len(mission.waypoints)):
         margins = mission.margins(index)
         for low, high, strict in (("on_track", "off_track", True), ("tolerance", "off_track", False)):
@@ -92,8 +92,8 @@ def _margin_problems(source: Source, at: Place, mission: MissionFile) -> Iterato
             place = _margin_place(source, at, index, (low, high))
             relation = "less than" if strict else "at most"
             message = f"got {low} {small:g} m with {high} {large:g} m, expected {low} to be {relation} {high}"
-            if (place, message) not in told:
-                told.add((place, message))
+            if (place, message) not in reported:
+                reported.add((place, message))
                 yield source.at(place).problem(message)
 
 

@@ -27,9 +27,9 @@ def arrival(pose: PoseEstimate, target: Point, within_m: float) -> Outcome[objec
     if not (np.isfinite(pose.covariance).all() and np.isfinite(pose.position_site_m).all()):
         return Outcome(Reason.UNEXPECTED, "the pose is no number")
     away_m = math.hypot(pose.x_m - target.x_m, pose.y_m - target.y_m)
-    told = f"{away_m * 1e3:.0f} mm from the way-point, two sigma {2e3 * pose.sigma_position_m:.0f} mm"
+    message = f"{away_m * 1e3:.0f} mm from the way-point, two sigma {2e3 * pose.sigma_position_m:.0f} mm"
     if away_m <= radius_m(pose, within_m):
-        return Outcome(Reason.DONE, told)
+        return Outcome(Reason.DONE, message)
     if away_m <= within_m:
-        return Outcome(Reason.ARRIVAL_UNCERTAIN, f"{told}, tolerance {within_m * 1e3:.0f} mm")
-    return Outcome(Reason.UNEXPECTED, f"{told}: outside of its tolerance of {within_m * 1e3:.0f} mm")
+        return Outcome(Reason.ARRIVAL_UNCERTAIN, f"{message}, tolerance {within_m * 1e3:.0f} mm")
+    return Outcome(Reason.UNEXPECTED, f"{message}: outside of its tolerance of {within_m * 1e3:.0f} mm")

@@ -37,7 +37,7 @@ class _LoggedDevice:
 
 @dataclass
 class _Log:
-    """The commands of one device. A stop is for what was told since the last one."""
+    """The commands of one device. A stop is for what was sent since the last one."""
 
     device: str
     write: Write
@@ -46,7 +46,7 @@ class _Log:
     def of(self, verb: Verb, device: Any) -> Callable[..., Any]:
         """The method that this verb is, written down."""
 
-        def told(*given: Any, **by_name: Any) -> Any:
+        def send(*given: Any, **by_name: Any) -> Any:
             self.write(Command(self.device, verb.name, dict(verb.values(*given, **by_name))))
             self._told = True
             return getattr(device, verb.name)(*given, **by_name)
@@ -59,4 +59,4 @@ class _Log:
                 self.write(Command(self.device, verb.name, dict(verb.values(*given, **by_name))))
             return answer
 
-        return stopped if verb.stops else told
+        return stopped if verb.stops else send

@@ -32,17 +32,17 @@ DETECTION_GRACE_S = 600.0
 def fault_rows(history: History, world: History) -> tuple[FaultStages, ...]:
     """The stages of each injected fault, in the order of their onsets."""
     armed = history.all(FaultArmedEvent)
-    told = sorted(history.all(FaultEvent) + world.all(FaultEvent), key=lambda at: at.time_s)
-    names = dict.fromkeys([at.event.name for at in armed] + [at.event.name for at in told])
-    return tuple(_stages(name, armed, told, history) for name in names)
+    changes = sorted(history.all(FaultEvent) + world.all(FaultEvent), key=lambda at: at.time_s)
+    names = dict.fromkeys([at.event.name for at in armed] + [at.event.name for at in changes])
+    return tuple(_stages(name, armed, changes, history) for name in names)
 
 
 def _stages(
-    name: str, armed: Sequence[At[FaultArmedEvent]], told: Sequence[At[FaultEvent]], history: History
+    name: str, armed: Sequence[At[FaultArmedEvent]], changes: Sequence[At[FaultEvent]], history: History
 ) -> FaultStages:
     onset = next((at for at in armed if at.event.name == name), None)
-    on = next((at for at in told if at.event.name == name and at.event.active), None)
-    off = next((at for at in told if at.event.name == name and not at.event.active), None)
+    on = next((at for at in changes if at.event.name == name and at.event.active), None)
+    off = next((at for at in changes if at.event.name == name and not at.event.active), None)
     stages = FaultStages(
         name=name,
         cause=(onset.event.cause or None) if onset else None,

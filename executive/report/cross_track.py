@@ -12,13 +12,13 @@ from executive.record.events import SegmentEvent
 from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, time_axis, timed
 from executive.report.figure import Figure
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 
 _WIDTH, _LEFT, _TOP, _HEIGHT = 1100.0, 200.0, 34.0, 250.0
 _MM = 1000.0
 
 
-def cross_track_figure(run: Run) -> Figure | None:
+def cross_track_figure(run: RecordedRun) -> Figure | None:
     """The chart, None where no segment was ever under way."""
     spans = list(segment_spans(run))
     if not spans:
@@ -49,7 +49,7 @@ def cross_track_figure(run: Run) -> Figure | None:
     return Figure("cross", "Cross-track error", legend(_legend(run)) + drawn, caption)
 
 
-def segment_spans(run: Run) -> Iterator[tuple[float, float, Segment]]:
+def segment_spans(run: RecordedRun) -> Iterator[tuple[float, float, Segment]]:
     """(from, to, segment) for every stretch of mission time with a segment under way."""
     events = run.history.all(SegmentEvent)
     ends = [at.time_s for at in events[1:]] + [run.end_s]
@@ -58,7 +58,7 @@ def segment_spans(run: Run) -> Iterator[tuple[float, float, Segment]]:
             yield at.time_s, end, at.event.segment
 
 
-def _legend(run: Run) -> list[tuple[str, str, str]]:
+def _legend(run: RecordedRun) -> list[tuple[str, str, str]]:
     entries = [
         ("area", palette.ON_TRACK, "on track"),
         ("area", palette.OFF_TRACK, "correcting"),
@@ -68,7 +68,7 @@ def _legend(run: Run) -> list[tuple[str, str, str]]:
     return [("line", palette.TRUTH, "true"), *entries] if run.track is not None else entries
 
 
-def _limit_mm(run: Run, segments: list[Segment]) -> float:
+def _limit_mm(run: RecordedRun, segments: list[Segment]) -> float:
     """Half the height of the chart: the on-track margin, all that was driven, a near off-track margin."""
     seen = [abs(p.track.cross_m) for p in run.estimates if p.track is not None]
     if run.cross is not None and np.isfinite(run.cross.cross_m).any():
@@ -101,7 +101,7 @@ def _margins(chart: Chart, spans: list[tuple[float, float, Segment]], limit: flo
     return "".join(body)
 
 
-def _believed(run: Run, chart: Chart) -> str:
+def _believed(run: RecordedRun, chart: Chart) -> str:
     known = [(p.time_s, p.track.cross_m * _MM) for p in run.estimates if p.track is not None]
     if not known:
         return ""
@@ -109,7 +109,7 @@ def _believed(run: Run, chart: Chart) -> str:
     return chart.line(times, cross, stroke=palette.ESTIMATE, stroke_width=1.2, stroke_dasharray="4 2.5")
 
 
-def _fixes(run: Run, chart: Chart) -> str:
+def _fixes(run: RecordedRun, chart: Chart) -> str:
     body = []
     for pose in run.fixes:
         if pose.track is None:
@@ -134,7 +134,7 @@ def _fixes(run: Run, chart: Chart) -> str:
     return "".join(body)
 
 
-def _cross_sigma_m(run: Run, pose: PoseEstimate) -> float:
+def _cross_sigma_m(run: RecordedRun, pose: PoseEstimate) -> float:
     """Standard deviation across the segment under way at the time of the pose [m]."""
     segment = next((s for start, end, s in segment_spans(run) if start <= pose.time_s <= end), None)
     if segment is None:

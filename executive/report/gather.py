@@ -22,7 +22,7 @@ from executive.record.truth import (
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class RecordedRun:
     """A run as the report sees it. `missing` holds a sentence per thing that is not there."""
 
     folder: Path
@@ -80,7 +80,7 @@ class Run:
         return self.estimates[index] if index >= 0 else None
 
 
-def gather(folder: Path) -> Run:
+def gather(folder: Path) -> RecordedRun:
     """Read a run folder. RecordError only if the folder itself is not there."""
     if not folder.is_dir():
         raise RecordError(f"{folder}: no such run folder")
@@ -95,7 +95,7 @@ def gather(folder: Path) -> Run:
     if not scenario.is_file():
         instead = "the copy in the record is shown" if text else "the run cannot be repeated from here"
         missing.append(f"scenario.yaml: not there; {instead}")
-    return Run(folder, text, _result(folder, missing), history, world, tuple(missing))
+    return RecordedRun(folder, text, _result(folder, missing), history, world, tuple(missing))
 
 
 def _recorded_scenario(history: History) -> str:

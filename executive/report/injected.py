@@ -12,7 +12,7 @@ from executive.record.events import Placed, PlacedEvent
 from executive.report import palette, svg
 from executive.report.figure import duration
 from executive.report.frame import MapFrame
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 
 _SIZE_PX, _LEAST_PX = 8.0, 4.0
 _WORDS = {
@@ -32,7 +32,7 @@ class Stay(NamedTuple):
     until_s: float | None
 
 
-def stays(run: Run) -> list[Stay]:
+def stays(run: RecordedRun) -> list[Stay]:
     """Every stay in the world, in order; of what moved, the last place."""
     found: list[Stay] = []
     under_way: dict[str, Stay] = {}
@@ -46,17 +46,17 @@ def stays(run: Run) -> list[Stay]:
     return sorted([*found, *under_way.values()], key=lambda stay: stay.since_s)
 
 
-def numbers(run: Run) -> Mapping[str, str]:
+def numbers(run: RecordedRun) -> Mapping[str, str]:
     """How map and table call each fault: 1, 2, …, in the order of the table."""
     return {row.name: str(n) for n, row in enumerate(run.result.faults, start=1)}
 
 
-def places(run: Run) -> list[Vec2]:
+def places(run: RecordedRun) -> list[Vec2]:
     """Where something was put, for the map to hold it."""
     return [(thing.x_m, thing.y_m) for stay in stays(run) for thing in stay.things]
 
 
-def things(run: Run, frame: MapFrame) -> str:
+def things(run: RecordedRun, frame: MapFrame) -> str:
     """What was put into the world: circles in the colour of faults, dashed once it is gone again."""
     return "".join(_thing(stay, thing, frame) for stay in stays(run) for thing in stay.things)
 
@@ -83,12 +83,12 @@ def _thing(stay: Stay, thing: Placed, frame: MapFrame) -> str:
     )
 
 
-def onsets(run: Run, frame: MapFrame) -> str:
+def onsets(run: RecordedRun, frame: MapFrame) -> str:
     """A numbered triangle over where the rover was when a fault took effect; of one place, side by side."""
     return "".join(_onset(*mark) for mark in _marks(run, frame))
 
 
-def _marks(run: Run, frame: MapFrame) -> Iterator[tuple[float, float, str, str]]:
+def _marks(run: RecordedRun, frame: MapFrame) -> Iterator[tuple[float, float, str, str]]:
     taken: dict[tuple[int, int], int] = {}
     for name, number in numbers(run).items():
         row = next(row for row in run.result.faults if row.name == name)
@@ -114,7 +114,7 @@ def _onset(x: float, y: float, number: str, words: str) -> str:
     )
 
 
-def where(run: Run, time_s: float) -> Vec2 | None:
+def where(run: RecordedRun, time_s: float) -> Vec2 | None:
     """Where the rover was then: truly, else as it believed."""
     track = run.track
     if track is not None and len(track.time_s):

@@ -10,12 +10,12 @@ from executive.record.result import waypoint_error_m
 from executive.report import layers, palette, svg
 from executive.report.figure import Figure, millimetres
 from executive.report.frame import MapFrame
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 
 _SIDE = 250.0
 
 
-def insets(run: Run) -> Figure | None:
+def insets(run: RecordedRun) -> Figure | None:
     """One square per way-point that was declared reached."""
     reached = run.history.all(WaypointEvent)
     if not reached:
@@ -35,7 +35,7 @@ def insets(run: Run) -> Figure | None:
     return Figure("insets", "At the way-points", f"<div class='cards'>{cards}</div>", caption)
 
 
-def _card(run: Run, at: At[WaypointEvent]) -> str:
+def _card(run: RecordedRun, at: At[WaypointEvent]) -> str:
     target = at.event.target
     tolerance = next((s.tolerance_m for s in run.segments if s.end == target), 0.03)
     off = 0.0 if run.track is None else waypoint_error_m(run.track, at)
@@ -67,7 +67,7 @@ def _card(run: Run, at: At[WaypointEvent]) -> str:
     return f"<div class='card'>{svg.drawing(_SIDE, _SIDE, body)}<p>{words}</p></div>"
 
 
-def _stood(run: Run, at: At[WaypointEvent], frame: MapFrame) -> str:
+def _stood(run: RecordedRun, at: At[WaypointEvent], frame: MapFrame) -> str:
     if run.track is None:
         return ""
     x_m, y_m = np.asarray(run.track.position(at.time_s))[:2]

@@ -13,11 +13,11 @@ from executive.record.truth import Track
 from executive.report import palette, svg
 from executive.report.axes import ticks
 from executive.report.frame import MapFrame, corridor, ellipse, outline
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 from executive.report.relief import shaded
 
 
-def ground(run: Run, frame: MapFrame) -> str:
+def ground(run: RecordedRun, frame: MapFrame) -> str:
     """Hill-shaded terrain and rocks; a plain tone where there is no elevation map."""
     plain = svg.element(
         "rect", x=frame.left_px, y=frame.top_px, width=frame.width_px, height=frame.height_px, fill="#efeae0"
@@ -60,7 +60,7 @@ def rocks(terrain: TerrainEvent, frame: MapFrame) -> str:
     )
 
 
-def plan(run: Run, frame: MapFrame) -> str:
+def plan(run: RecordedRun, frame: MapFrame) -> str:
     """Both margins as bands with round joints, then the planned line."""
     bands = []
     for colour, opacity, width in (
@@ -92,7 +92,7 @@ def plan(run: Run, frame: MapFrame) -> str:
     return "".join(bands + lines)
 
 
-def zones(run: Run, frame: MapFrame) -> str:
+def zones(run: RecordedRun, frame: MapFrame) -> str:
     """The tolerance zone at the end of each segment."""
     return "".join(
         svg.element(
@@ -120,7 +120,7 @@ def true_track(track: Track, frame: MapFrame, width: float = 2.0) -> str:
     )
 
 
-def believed_track(run: Run, frame: MapFrame, width: float = 1.4) -> str:
+def believed_track(run: RecordedRun, frame: MapFrame, width: float = 1.4) -> str:
     """What the executive believed, prediction and fixes alike."""
     return svg.polyline(
         _distinct(frame.to_px([(p.x_m, p.y_m) for p in run.estimates])),
@@ -131,7 +131,7 @@ def believed_track(run: Run, frame: MapFrame, width: float = 1.4) -> str:
     )
 
 
-def fixes(run: Run, frame: MapFrame, sigmas: float, dot_px: float) -> str:
+def fixes(run: RecordedRun, frame: MapFrame, sigmas: float, dot_px: float) -> str:
     """Every vision fix with its error ellipse, `sigmas` standard deviations large."""
     body = []
     for n, pose in enumerate(run.fixes, start=1):
@@ -207,7 +207,7 @@ def graticule(frame: MapFrame) -> str:
     return "".join(body)
 
 
-def exaggeration(run: Run, frame: MapFrame) -> int:
+def exaggeration(run: RecordedRun, frame: MapFrame) -> int:
     """The round factor that makes a typical 2-sigma ellipse visible at this scale; 1 where it is anyway."""
     if not run.fixes:
         return 1

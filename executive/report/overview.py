@@ -12,13 +12,13 @@ from executive.report import injected, layers, palette, svg
 from executive.report.axes import legend
 from executive.report.figure import Figure
 from executive.report.frame import MapFrame, corridor
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 
 _WIDTH, _LEFT, _BOTTOM = 1100.0, 44.0, 24.0
 _STEREO_HALF_ANGLE_RAD = math.radians(11.5)
 
 
-def overview(run: Run) -> Figure | None:
+def overview(run: RecordedRun) -> Figure | None:
     """Plan, tracks, localisations and strategies over the terrain; None where there is nothing to place."""
     xy = [p for s in run.segments for p in corridor(s, s.off_track_m)] + [
         (p.x_m, p.y_m) for p in run.estimates
@@ -70,7 +70,7 @@ def overview(run: Run) -> Figure | None:
     return Figure("map", "Map", legend(_legend(run, factor)) + drawn, _caption(run, factor))
 
 
-def _legend(run: Run, factor: int) -> list[tuple[str, str, str]]:
+def _legend(run: RecordedRun, factor: int) -> list[tuple[str, str, str]]:
     scaled = f", drawn ×{factor}" if factor > 1 else ""
     entries = [
         ("area", palette.ON_TRACK, "on-track margin"),
@@ -89,7 +89,7 @@ def _legend(run: Run, factor: int) -> list[tuple[str, str, str]]:
     return entries
 
 
-def _caption(run: Run, factor: int) -> str:
+def _caption(run: RecordedRun, factor: int) -> str:
     scaled = (
         f" The ellipses are drawn {factor} times too large to be seen at this scale; "
         "in the way-point views below they are true."
@@ -111,7 +111,7 @@ def _caption(run: Run, factor: int) -> str:
     )
 
 
-def _views(run: Run, frame: MapFrame) -> str:
+def _views(run: RecordedRun, frame: MapFrame) -> str:
     rays = [svg.line(frame.x(0), frame.y(0), frame.x(p.x_m), frame.y(p.y_m), class_="ray") for p in run.fixes]
     if run.fixes:
         rays.insert(0, _wedge(run.fixes[-1], frame))
@@ -127,7 +127,7 @@ def _wedge(pose: PoseEstimate, frame: MapFrame) -> str:
     return svg.polygon(frame.to_px(corners), fill="#ffffff", fill_opacity=0.2)
 
 
-def _rovers(run: Run, frame: MapFrame) -> str:
+def _rovers(run: RecordedRun, frame: MapFrame) -> str:
     poses = [run.fixes[0], run.fixes[-1]] if run.fixes else []
     drawn = [
         layers.rover(frame, p.x_m, p.y_m, p.heading_rad, palette.INK, opacity)
@@ -136,7 +136,7 @@ def _rovers(run: Run, frame: MapFrame) -> str:
     return "".join(drawn)
 
 
-def _waypoints(run: Run, frame: MapFrame) -> str:
+def _waypoints(run: RecordedRun, frame: MapFrame) -> str:
     if not run.segments:
         return ""
     places = [run.segments[0].start, *(s.end for s in run.segments)]
@@ -148,7 +148,7 @@ def _waypoints(run: Run, frame: MapFrame) -> str:
     return "".join(body)
 
 
-def _strategies(run: Run, frame: MapFrame) -> str:
+def _strategies(run: RecordedRun, frame: MapFrame) -> str:
     body = []
     chosen = [at for at in run.history.all(StrategyEvent) if at.event.verdict is Verdict.CHOSEN]
     for n, (time_s, event) in enumerate(chosen):

@@ -16,7 +16,7 @@ from executive.record.events import Start
 from executive.report.cross_track import cross_track_figure
 from executive.report.explain.sentence import sentence
 from executive.report.figure import Figure
-from executive.report.gather import Run, gather
+from executive.report.gather import RecordedRun, gather
 from executive.report.insets import insets
 from executive.report.overview import overview
 from executive.report.panels import telemetry
@@ -48,7 +48,7 @@ def write_report(run_dir: Path, tree_svg: str | None = None) -> Path:
     return path
 
 
-def render(run: Run, tree_svg: str | None = None) -> str:
+def render(run: RecordedRun, tree_svg: str | None = None) -> str:
     """The page as text."""
     figures, absent = [], []
     for make, title, otherwise in _FIGURES:
@@ -95,7 +95,7 @@ def _tree(drawing: str) -> Figure:
     return Figure("tree", "The tree", f"<div class='tree'>{inline}</div>", caption)
 
 
-def _repeat(run: Run) -> str:
+def _repeat(run: RecordedRun) -> str:
     tier = run.result.tier
     words = ["longarm run scenario.yaml"]
     if run.result.seed is not None:
@@ -105,7 +105,7 @@ def _repeat(run: Run) -> str:
     return " ".join(words)
 
 
-def _facts(run: Run) -> list[tuple[str, str]]:
+def _facts(run: RecordedRun) -> list[tuple[str, str]]:
     """What identifies the run."""
     start = run.history.last(Start)
     seed = "–" if run.result.seed is None else str(run.result.seed)
@@ -115,7 +115,7 @@ def _facts(run: Run) -> list[tuple[str, str]]:
     return facts
 
 
-def _cursor_data(run: Run) -> str:
+def _cursor_data(run: RecordedRun) -> str:
     """Where the rover was over time, for the cursor that joins charts and map: [[s, m, m], …]."""
     if run.track is not None:
         rows = np.column_stack([run.track.time_s, run.track.position_site_m[:, :2]])

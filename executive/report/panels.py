@@ -17,7 +17,7 @@ from executive.record.history import At
 from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, time_axis, timed
 from executive.report.figure import Figure
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 
 _WIDTH, _LEFT, _TOP, _BOTTOM = 540.0, 44.0, 30.0, 140.0
 _LEAST_TRAVEL_M = 0.02
@@ -37,7 +37,7 @@ Panel = tuple[str, Sequence[Series]]
 """A title with the unit, and the lines."""
 
 
-def telemetry(run: Run) -> Figure | None:
+def telemetry(run: RecordedRun) -> Figure | None:
     """A panel for each channel over the same mission time; None where no telemetry was recorded."""
     panels = [*_of_rover(run), *of_devices(run)]
     if not panels:
@@ -52,7 +52,7 @@ def telemetry(run: Run) -> Figure | None:
     return Figure("telemetry", "Telemetry", f"<div class='panels'>{cards}</div>", caption)
 
 
-def of_devices(run: Run) -> Iterator[Panel]:
+def of_devices(run: RecordedRun) -> Iterator[Panel]:
     """A panel for each quantity that a device reported on its own, in the unit of its type."""
     known = registry.every(DEVICE_KIND)
     by_device: dict[str, list[At[DeviceReading]]] = {}
@@ -69,7 +69,7 @@ def of_devices(run: Run) -> Iterator[Panel]:
             yield f"{device}: {name} [{shown}]".replace("_", " "), [Series(name, palette.ESTIMATE, t, values)]
 
 
-def _of_rover(run: Run) -> list[Panel]:
+def _of_rover(run: RecordedRun) -> list[Panel]:
     """Six panels of what a rover with head and tether reports together; none for any other robot."""
     samples = run.history.all(Telemetry)
     if not samples:
@@ -111,7 +111,7 @@ def _of_rover(run: Run) -> list[Panel]:
     ]
 
 
-def _panel(run: Run, title: str, series: Sequence[Series]) -> str:
+def _panel(run: RecordedRun, title: str, series: Sequence[Series]) -> str:
     finite = np.concatenate([s.values[np.isfinite(s.values)] for s in series])
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     if 0 < low < 0.9 * high:
@@ -132,7 +132,7 @@ def _panel(run: Run, title: str, series: Sequence[Series]) -> str:
     return f"<div class='panel'>{names}{drawn}</div>"
 
 
-def _slip(run: Run, time_s: Array, travel_m: Array) -> list[Series]:
+def _slip(run: RecordedRun, time_s: Array, travel_m: Array) -> list[Series]:
     """1 - distance / belt travel between successive fixes, at the time of the later one."""
     rows = []
     for before, after in pairwise(run.fixes):

@@ -6,7 +6,7 @@ from collections import defaultdict
 from typing import NamedTuple
 
 from executive.record.events import NodeChange
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 from executive.tree.catalogue import control_types
 
 
@@ -19,7 +19,7 @@ class Span(NamedTuple):
     words: str
 
 
-def leaf_spans(run: Run) -> dict[str, list[Span]]:
+def leaf_spans(run: RecordedRun) -> dict[str, list[Span]]:
     """Per leaf path, in order of first entry: the stretches it ran, each with how it ended.
 
     A leaf is a node that no other node of the record lies under. One that ended within the tick in which
@@ -48,7 +48,7 @@ def leaf_spans(run: Run) -> dict[str, list[Span]]:
     return dict(spans)
 
 
-def strategy_spans(run: Run) -> dict[str, list[Span]]:
+def strategy_spans(run: RecordedRun) -> dict[str, list[Span]]:
     """Per strategy: from its choice to its verdict."""
     spans: dict[str, list[Span]] = defaultdict(list)
     for row in run.result.strategies:
@@ -59,7 +59,7 @@ def strategy_spans(run: Run) -> dict[str, list[Span]]:
     return dict(spans)
 
 
-def fault_spans(run: Run) -> dict[str, list[Span]]:
+def fault_spans(run: RecordedRun) -> dict[str, list[Span]]:
     """Per injected fault: while it was in effect."""
     spans: dict[str, list[Span]] = {}
     for row in run.result.faults:

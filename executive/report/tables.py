@@ -10,7 +10,7 @@ from executive.record.events import WaypointEvent
 from executive.record.result import waypoint_error_m
 from executive.record.rows import JudgedRow, worst_first
 from executive.report.figure import duration, millimetres
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 from executive.report.injected import numbers
 from executive.report.overview import letter
 
@@ -27,13 +27,13 @@ class Table:
     folded: bool = False
 
 
-def tables(run: Run) -> list[Table]:
+def tables(run: RecordedRun) -> list[Table]:
     """Every table that has rows."""
     kinds = (waypoints, strategies, faults, expectations, safety, calls, localisations)
     return [table for kind in kinds if (table := kind(run)).rows]
 
 
-def waypoints(run: Run) -> Table:
+def waypoints(run: RecordedRun) -> Table:
     rows = []
     for at in run.history.all(WaypointEvent):
         event = at.event
@@ -56,7 +56,7 @@ def waypoints(run: Run) -> Table:
     return Table("waypoints", "Way-points", header, tuple(rows))
 
 
-def strategies(run: Run) -> Table:
+def strategies(run: RecordedRun) -> Table:
     rows = tuple(
         (
             letter(n),
@@ -76,7 +76,7 @@ def strategies(run: Run) -> Table:
 FAULT_STAGES = ("armed", "on", "observable", "detected", "isolated", "recovered", "off")
 
 
-def faults(run: Run) -> Table:
+def faults(run: RecordedRun) -> Table:
     number = numbers(run)
     rows = tuple(
         (
@@ -96,7 +96,7 @@ def faults(run: Run) -> Table:
     return Table("faults", "Injected faults", header, rows, note if rows else "")
 
 
-def expectations(run: Run) -> Table:
+def expectations(run: RecordedRun) -> Table:
     rows = tuple(_judged(row) for row in worst_first(run.result.expectations))
     note = (
         "Robustness is the distance to the limit, negative where it is not met; flags and yes-or-no "
@@ -106,7 +106,7 @@ def expectations(run: Run) -> Table:
     return Table("expectations", "Expectations", ("expectation", *_JUDGED), rows, note if rows else "")
 
 
-def safety(run: Run) -> Table:
+def safety(run: RecordedRun) -> Table:
     rows = tuple(_judged(row) for row in run.result.safety or ())
     note = "These must hold of every run, whatever fails and whatever its scenario expects."
     return Table("safety", "Safety", ("whatever happens", *_JUDGED), rows, note if rows else "")
@@ -121,7 +121,7 @@ def _judged(row: JudgedRow) -> tuple[str, ...]:
     return row.text, verdict, margin, _time(row.t_violation_s), row.warning or ""
 
 
-def calls(run: Run) -> Table:
+def calls(run: RecordedRun) -> Table:
     rows = tuple(
         (
             duration(time_s),
@@ -134,7 +134,7 @@ def calls(run: Run) -> Table:
     return Table("calls", "Calls to ground", ("at", "reason", "detail", "evidence"), rows)
 
 
-def localisations(run: Run) -> Table:
+def localisations(run: RecordedRun) -> Table:
     rows = []
     for n, pose in enumerate(run.fixes, start=1):
         error = run.errors[n - 1] if run.errors else None

@@ -10,7 +10,7 @@ from executive.record.history import At
 from executive.report import palette, svg
 from executive.report.axes import Chart, Scale, legend, thinned, time_axis, timed
 from executive.report.figure import Figure, duration
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 from executive.report.lanes import Group, Lane, drawn
 from executive.report.spans import (
     Span,
@@ -26,7 +26,7 @@ _UNFOLDED = 24
 """The most leaves that are shown without folding."""
 
 
-def timeline(run: Run) -> Figure | None:
+def timeline(run: RecordedRun) -> Figure | None:
     """Lanes of leaves in foldable groups, of strategies and of faults; None where nothing was recorded."""
     groups = [
         *_leaves(run),
@@ -50,7 +50,7 @@ def timeline(run: Run) -> Figure | None:
     return Figure("timeline", "Timeline", legend(words) + drawn(groups, run.end_s), caption)
 
 
-def _leaves(run: Run) -> list[Group]:
+def _leaves(run: RecordedRun) -> list[Group]:
     """The leaves, grouped by the tree or named node that they stand in; open where they fill no page."""
     spans = leaf_spans(run)
     names = short_names(list(spans))
@@ -73,7 +73,7 @@ def _lanes(spans: dict[str, list[Span]]) -> tuple[Lane, ...]:
     return tuple(Lane(name, name, tuple(of_one)) for name, of_one in spans.items())
 
 
-def hypotheses(run: Run) -> Figure | None:
+def hypotheses(run: RecordedRun) -> Figure | None:
     """Stacked areas of the hypotheses' weights; None where none were weighed."""
     events = run.history.all(HypothesesEvent)
     names = _likely([at.event for at in events])

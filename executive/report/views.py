@@ -13,7 +13,7 @@ from executive.record.events import AnnotationsEvent, ImageEvent
 from executive.report import svg
 from executive.report.axes import legend
 from executive.report.figure import Figure, duration
-from executive.report.gather import Run
+from executive.report.gather import RecordedRun
 
 _MOST = 4
 _DETECTED, _REPROJECTED, _WINDOW = "#ffa033", "#46c8ff", "#7be0a0"
@@ -27,7 +27,7 @@ class View(NamedTuple):
     marks: AnnotationsEvent | None
 
 
-def views(run: Run) -> Figure | None:
+def views(run: RecordedRun) -> Figure | None:
     """Pairs of pictures: up to four localisations, between the first and the last full frame."""
     found = _views(run)
     if not found:
@@ -52,7 +52,7 @@ def views(run: Run) -> Figure | None:
     )
 
 
-def _views(run: Run) -> dict[float, list[View]]:
+def _views(run: RecordedRun) -> dict[float, list[View]]:
     """Pictures by time; the annotations of the same camera and time belong to them."""
     marks = {(at.time_s, at.event.camera): at.event for at in run.history.all(AnnotationsEvent)}
     found: dict[float, list[View]] = {}
@@ -61,7 +61,7 @@ def _views(run: Run) -> dict[float, list[View]]:
     return found
 
 
-def _chosen(run: Run, times: list[float]) -> list[float]:
+def _chosen(run: RecordedRun, times: list[float]) -> list[float]:
     """First, last, those before a strategy was chosen, then evenly spread ones, in order of time."""
     wanted = [times[0], times[-1]]
     for row in run.result.strategies:

@@ -76,7 +76,7 @@ def _node(node: NodeType) -> Page:
 
 
 def _port(port: PortSpec) -> Page:
-    told: Page = {
+    page: Page = {
         "name": port.name,
         "type": port.type.name,
         "direction": port.direction.value,
@@ -84,14 +84,14 @@ def _port(port: PortSpec) -> Page:
         "required": port.default is REQUIRED,
     }
     if port.choices:
-        told["choices"] = list(port.choices)
+        page["choices"] = list(port.choices)
     if isinstance(port.default, FromTree):
-        told["default"] = f"{{{port.default.name}}}"
+        page["default"] = f"{{{port.default.name}}}"
     elif port.default is not REQUIRED:
-        told["default"] = (
+        page["default"] = (
             port.default if isinstance(port.default, int | float | str | None) else str(port.default)
         )
-    return told
+    return page
 
 
 def _fields(thing: object) -> Page:
@@ -123,7 +123,7 @@ def as_text(name: str, entry: Page) -> str:
     lines = [name + (f"  ({category})" if category else ""), f"  {entry.get('doc', '')}"]
     lines += [_port_line(port) for port in entry.get("ports", ())]
     lines += [_parameter_line(Parameter(**given)) for given in entry.get("parameters", ())]
-    told = (
+    common = (
         "doc",
         "category",
         "condition",
@@ -135,7 +135,7 @@ def as_text(name: str, entry: Page) -> str:
     for key, value in entry.items():
         if key in ANYWHERE and not value:
             lines.append(f"  {key}: any")
-        elif key not in told and value is not False and value not in (None, [], {}, ""):
+        elif key not in common and value is not False and value not in (None, [], {}, ""):
             lines.append(f"  {key}: {_words(value)}")
     return "\n".join(lines) + "\n"
 
@@ -144,8 +144,8 @@ def _words(value: Any) -> str:
     """A field in a line: the members of a list, the values of a mapping in it."""
     if not isinstance(value, list | dict):
         return str(value)
-    told = [" ".join(str(v) for v in m.values() if v) if isinstance(m, dict) else str(m) for m in value]
-    return ", ".join(told)
+    words = [" ".join(str(v) for v in m.values() if v) if isinstance(m, dict) else str(m) for m in value]
+    return ", ".join(words)
 
 
 def _port_line(port: Page) -> str:

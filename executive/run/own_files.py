@@ -135,13 +135,13 @@ def _listing(kind: NodeType, node: dict[str, Any]) -> dict[str, Any] | None:
 def _port(port: PortSpec) -> dict[str, Any]:
     """What may be given for a port: a reference always, a literal where its type has them."""
     reference = {"type": "string", "pattern": r"^\{.*\}$"}
-    told = {"description": f"{port.help} ({port.type.name}, {port.direction.value})"}
+    described = {"description": f"{port.help} ({port.type.name}, {port.direction.value})"}
     if port.direction is not Direction.IN or not port.type.literal:
-        return reference | told
+        return reference | described
     literal = _literal(port)
     if port.fixed or literal == {"type": "string"}:
-        return literal | told
-    return {"anyOf": [literal, reference]} | told
+        return literal | described
+    return {"anyOf": [literal, reference]} | described
 
 
 def _literal(port: PortSpec) -> dict[str, Any]:

@@ -72,7 +72,7 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
     for spec in instruments:
         source = spec.expand(source)
     seed = source.data.get("seed", 0) if isinstance(source.data, dict) else 0
-    if isinstance(seed, int):  # what else it may be is told where the file is read
+    if isinstance(seed, int):  # what else it may be is message where the file is read
         source = problems.attempt(_drawn, source, abs(seed), instruments) or source
     owned = [key for spec in instruments for key in spec.keys]
     file = problems.attempt(parse, source, ScenarioFile, beside=owned)
@@ -169,7 +169,7 @@ def _text(source: Source, key: str, default: str) -> str:
 
 
 def _setting(source: Source, backend: str, tier: str | None) -> Setting:
-    """What instruments must fit, as far as the file says it; what is wrong with that is told elsewhere."""
+    """What instruments must fit, as far as the file says it; what is wrong with that is message elsewhere."""
     mission = source.data.get("mission") if isinstance(source.data, dict) else None
     points = mission.get("waypoints") if isinstance(mission, dict) else None
     return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
@@ -180,11 +180,11 @@ def _unfit(source: Source, localizer: ChosenLocalizer, backend: BackendSpec) -> 
     spec, mark = localizer.spec, source.at(("localizer",))
     lacking = [name for name in spec.needs if name not in devices_of(backend)]
     if lacking:
-        told = f"{spec.name} needs {', '.join(lacking)}, which the backend {backend.name} does not have"
-        yield mark.problem(told)
+        message = f"{spec.name} needs {', '.join(lacking)}, which the backend {backend.name} does not have"
+        yield mark.problem(message)
     if not issubclass(backend.rig, spec.rig):
-        told = f"{spec.name} needs a {spec.rig.__name__}, the backend {backend.name} has a"
-        yield mark.problem(f"{told} {backend.rig.__name__}")
+        message = f"{spec.name} needs a {spec.rig.__name__}, the backend {backend.name} has a"
+        yield mark.problem(f"{message} {backend.rig.__name__}")
 
 
 def _check_policy(source: Source) -> None:
@@ -197,7 +197,7 @@ def _backend(source: Source, name: str) -> BackendSpec:
 
 def _world(source: Source, backend: BackendSpec) -> BaseModel:
     if not isinstance(source.data, dict):
-        raise ConfigError([])  # told where the file as a whole is read
+        raise ConfigError([])  # message where the file as a whole is read
     if "world" not in source.data:
         source = source.graft(("world",), Source({}, {(): source.at(())}, folders={(): source.folder()}))
     return parse(source, backend.world_model, ("world",))
@@ -253,7 +253,7 @@ def _tier(source: Source, backend: BackendSpec) -> str | None:
     if said is None:
         return backend.tiers[0]
     if not isinstance(said, str):
-        return None  # told where the file as a whole is read
+        return None  # message where the file as a whole is read
     if said not in backend.tiers:
         expected = f"a tier of {backend.name}: {listed(backend.tiers)}{guess(said, backend.tiers)}"
         raise ConfigError([source.at(("tier",)).problem(f"got {shown_data(said)}, expected {expected}")])

@@ -1,7 +1,7 @@
 """In-situ calibration of the head from views of rover and terrain: docs/calibration.md."""
 
-from perception.calibration.parameters import NAMES, PARAMETERS, Parameter, changed_rig
-from perception.calibration.result import Calibrated, Direction
+from perception.calibration.parameters import NAMES, PARAMETERS, RigParameter, changed_rig
+from perception.calibration.result import Calibrated, ParameterDirection
 from perception.calibration.solve import calibrate
 from perception.calibration.survey import Landmark, Look, PointImages, RoverImages, Station, Survey
 
@@ -9,11 +9,11 @@ __all__ = [
     "NAMES",
     "PARAMETERS",
     "Calibrated",
-    "Direction",
     "Landmark",
     "Look",
-    "Parameter",
+    "ParameterDirection",
     "PointImages",
+    "RigParameter",
     "RoverImages",
     "Station",
     "Survey",

@@ -21,7 +21,7 @@ DEGREE = math.radians(1.0)
 
 
 @dataclass(frozen=True)
-class Parameter:
+class RigParameter:
     """`sigma` is the standard deviation, in `unit`, of what is known before any view is taken."""
 
     name: str
@@ -31,22 +31,22 @@ class Parameter:
 
 
 PARAMETERS = (
-    Parameter("focal", "", 5e-3, "focal length of both cameras, relative"),
-    Parameter("focal_difference", "", 1e-3, "left focal length less the right one, relative"),
-    Parameter("radial", "", 0.02, "k1 of both lenses"),
-    Parameter("vergence", "rad", 0.3 * DEGREE, "each camera turned inwards"),
-    Parameter("pitch_difference", "rad", 0.1 * DEGREE, "left camera's pitch less the right one's"),
-    Parameter("roll_difference", "rad", 0.1 * DEGREE, "left camera's roll less the right one's"),
-    Parameter("roll", "rad", 0.1 * DEGREE, "both cameras rolled in the head"),
-    Parameter("base", "", 2e-4, "distance of the cameras, relative"),
-    Parameter("marker_scale", "", 2e-4, "distances of the rover's markers, relative"),
-    Parameter("pan_zero", "rad", 1.0 * DEGREE, "true pan less the encoder's"),
-    Parameter("tilt_zero", "rad", 0.5 * DEGREE, "true tilt less the encoder's"),
-    Parameter("lean_x", "rad", 0.3 * DEGREE, "mast leaning about site x"),
-    Parameter("lean_y", "rad", 0.3 * DEGREE, "mast leaning about site y"),
-    Parameter("axes_skew", "rad", 0.05 * DEGREE, "tilt axis out of square to the pan axis"),
-    Parameter("focal_per_k", "1/K", 2e-5, "drift of both focal lengths with temperature, relative"),
-    Parameter("vergence_per_k", "rad/K", 1e-5, "drift of the vergence with temperature"),
+    RigParameter("focal", "", 5e-3, "focal length of both cameras, relative"),
+    RigParameter("focal_difference", "", 1e-3, "left focal length less the right one, relative"),
+    RigParameter("radial", "", 0.02, "k1 of both lenses"),
+    RigParameter("vergence", "rad", 0.3 * DEGREE, "each camera turned inwards"),
+    RigParameter("pitch_difference", "rad", 0.1 * DEGREE, "left camera's pitch less the right one's"),
+    RigParameter("roll_difference", "rad", 0.1 * DEGREE, "left camera's roll less the right one's"),
+    RigParameter("roll", "rad", 0.1 * DEGREE, "both cameras rolled in the head"),
+    RigParameter("base", "", 2e-4, "distance of the cameras, relative"),
+    RigParameter("marker_scale", "", 2e-4, "distances of the rover's markers, relative"),
+    RigParameter("pan_zero", "rad", 1.0 * DEGREE, "true pan less the encoder's"),
+    RigParameter("tilt_zero", "rad", 0.5 * DEGREE, "true tilt less the encoder's"),
+    RigParameter("lean_x", "rad", 0.3 * DEGREE, "mast leaning about site x"),
+    RigParameter("lean_y", "rad", 0.3 * DEGREE, "mast leaning about site y"),
+    RigParameter("axes_skew", "rad", 0.05 * DEGREE, "tilt axis out of square to the pan axis"),
+    RigParameter("focal_per_k", "1/K", 2e-5, "drift of both focal lengths with temperature, relative"),
+    RigParameter("vergence_per_k", "rad/K", 1e-5, "drift of the vergence with temperature"),
 )
 NAMES = tuple(parameter.name for parameter in PARAMETERS)
 _INWARDS = (-1.0, 1.0)  # the yaw that turns the left and the right camera inwards

@@ -18,7 +18,7 @@ OBSERVED = 0.5  # a parameter or direction is observed if the views halve its pr
 
 
 @dataclass(frozen=True)
-class Direction:
+class ParameterDirection:
     """A combination of parameters, in prior sigmas, and the share of its prior sigma that is left."""
 
     parts: tuple[tuple[str, float], ...]
@@ -74,7 +74,7 @@ class Calibrated:
         left = np.sqrt(np.diag(self.covariance)) / self.prior_sigmas
         return tuple(name for name, share in zip(NAMES, left, strict=True) if share < OBSERVED)
 
-    def unobserved(self) -> tuple[Direction, ...]:
+    def unobserved(self) -> tuple[ParameterDirection, ...]:
         """Independent combinations of parameters that the views did not show, the least seen first."""
         shares, axes = np.linalg.eigh(self.covariance / np.outer(self.prior_sigmas, self.prior_sigmas))
         return tuple(
@@ -117,10 +117,12 @@ class Calibrated:
         return "\n".join([fit, *rows, *(f"not observed: {direction}" for direction in self.unobserved())])
 
 
-def _direction(axis: Array, left: float) -> Direction:
+def _direction(axis: Array, left: float) -> ParameterDirection:
     strongest = sorted(range(len(axis)), key=lambda i: -abs(axis[i]))[:3]
     sign = np.sign(axis[strongest[0]])
-    return Direction(tuple((NAMES[i], float(sign * axis[i])) for i in strongest if abs(axis[i]) > 0.3), left)
+    return ParameterDirection(
+        tuple((NAMES[i], float(sign * axis[i])) for i in strongest if abs(axis[i]) > 0.3), left
+    )
 
 
 def _square_root(covariance: Array) -> Array:

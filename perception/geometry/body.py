@@ -10,7 +10,7 @@ import numpy as np
 from executive.core.rig import CabinCalibration
 from executive.core.types import Array
 from perception.geometry.rotation import rot_y
-from perception.kernels.chain import Cabin
+from perception.kernels.chain import CabinChain
 from perception.kernels.chain import points_in_body as _points_in_body
 from perception.kernels.compiled import plain
 
@@ -48,7 +48,7 @@ def points_in_body(
 
 
 @lru_cache(maxsize=64)
-def kernel_cabin(cabin: CabinCalibration) -> Cabin:
+def kernel_cabin(cabin: CabinCalibration) -> CabinChain:
     """What the kernels take of the cabin."""
     pivot, offset = plain(cabin.arm_pivot_body_m), plain(cabin.plc_offset_cabin_m)
-    return Cabin(pivot, float(cabin.arm_length_m), offset)
+    return CabinChain(pivot, float(cabin.arm_length_m), offset)

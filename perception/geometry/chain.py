@@ -19,7 +19,7 @@ from perception.geometry.camera import StereoModel
 from perception.geometry.head_model import kernel_head, site_ih
 from perception.geometry.rotation import exp_map, matrix_from_quat, quat_from_matrix
 from perception.kernels.chain import STATE_SIZE as STATE_SIZE
-from perception.kernels.chain import Cabin, Head, project, project_points
+from perception.kernels.chain import CabinChain, HeadChain, project, project_points
 from perception.kernels.compiled import plain
 from perception.kernels.optics import Optics
 
@@ -60,7 +60,7 @@ class Chain:
         return cls(rig, StereoModel.of(rig), plain(rig.markers.positions_plc_m))
 
     @cached_property
-    def kernel_rig(self) -> tuple[Optics, Head, Cabin, Array]:
+    def kernel_rig(self) -> tuple[Optics, HeadChain, CabinChain, Array]:
         """What the kernels take of the rig."""
         return self.model.optics, kernel_head(self.rig.head), kernel_cabin(self.rig.cabin), self.markers_plc_m
 

@@ -10,7 +10,7 @@ from executive.core.rig import HeadCalibration
 from executive.core.types import Array, Vec2
 from perception.geometry.body import Transform
 from perception.geometry.rotation import rot_x, rot_y, rot_z
-from perception.kernels.chain import Head, head_turns
+from perception.kernels.chain import HeadChain, head_turns
 
 
 def site_ih(head: HeadCalibration, head_rad: Vec2) -> Transform:
@@ -35,8 +35,8 @@ def axes_site(head: HeadCalibration, head_rad: Vec2) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=64)
-def kernel_head(head: HeadCalibration) -> Head:
+def kernel_head(head: HeadCalibration) -> HeadChain:
     """What the kernels take of the head."""
     before, between = rot_y(head.lean_rad[1]) @ rot_x(head.lean_rad[0]), rot_x(head.axes_skew_rad)
     zeros = np.array([head.pan_zero_rad, head.tilt_zero_rad])
-    return Head(before, between, zeros, float(head.mast_height_m))
+    return HeadChain(before, between, zeros, float(head.mast_height_m))

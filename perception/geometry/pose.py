@@ -18,8 +18,8 @@ from perception.geometry.chain import STATE_SIZE, Chain, ChainState
 from perception.geometry.checks import as_array, as_finite
 from perception.kernels.compiled import plain
 from perception.kernels.first_guess import body_guess, plane_guess
-from perception.kernels.gauss_newton import Problem, gauss_newton, weights_of
-from perception.kernels.readings import Measured, add_readings
+from perception.kernels.gauss_newton import PoseProblem, gauss_newton, weights_of
+from perception.kernels.readings import WeightedReadings, add_readings
 from perception.kernels.readings import roll_pitch as attitude
 
 _SIGMA_TILT_FLOOR_RAD = 1e-7
@@ -122,11 +122,11 @@ def estimate(chain: Chain, sighting: Sighting, start: Transform, prior: Prior | 
     shape = (2, len(chain.markers_plc_m), 2)
     uv = plain(as_array("uv_px", sighting.uv_px, shape))
     weights, seen = weights_of(uv, plain(as_array("covariance_px2", sighting.covariance_px2, (*shape, 2))))
-    readings = Readings.of(chain, sighting, prior)
+    readings = PoseReadings.of(chain, sighting, prior)
     dof = 2 * seen + readings.extra_rows - 6
     if dof < 0:
         raise ValueError(f"got {seen} marker images, expected enough to fix 6 degrees of freedom")
-    problem = Problem(*chain.kernel_rig, readings.measured, uv, weights)
+    problem = PoseProblem(*chain.kernel_rig, readings.measured, uv, weights)
     found = gauss_newton(problem, plain(start.rotation), plain(start.position_m), sighting.angles_rad)
     pan, tilt, arm, cabin = found.angles_rad.tolist()
     state = ChainState(Transform(found.rotation, found.position_m), (pan, tilt), (arm, cabin))
@@ -143,20 +143,20 @@ def estimate(chain: Chain, sighting: Sighting, start: Transform, prior: Prior | 
 
 
 @dataclass(frozen=True, eq=False)
-class Readings:
+class PoseReadings:
     """Everything measured besides pixels: encoders, inclinometers, the prediction.
 
     `extra_rows` is how many numbers that is, beyond the encoders' four.
     """
 
-    measured: Measured
+    measured: WeightedReadings
     extra_rows: int
 
     @classmethod
-    def of(cls, chain: Chain, sighting: Sighting, prior: Prior | None) -> Readings:
+    def of(cls, chain: Chain, sighting: Sighting, prior: Prior | None) -> PoseReadings:
         sigma_tilt = max(chain.rig.rover.inclinometer_sigma_rad, _SIGMA_TILT_FLOOR_RAD)
         tilted = sighting.tilt_rad is not None
-        measured = Measured(
+        measured = WeightedReadings(
             sighting.angles_rad,
             chain.encoder_weight,
             np.array(sighting.tilt_rad or (0.0, 0.0)),

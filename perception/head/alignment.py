@@ -40,7 +40,7 @@ class Alignment:
     mean: Array
     covariance: Array
 
-    def joined(self, other: Alignment) -> Alignment:
+    def fuse(self, other: Alignment) -> Alignment:
         """What two independent looks say together."""
         mine, theirs = np.linalg.inv(self.covariance), np.linalg.inv(other.covariance)
         covariance = np.linalg.inv(mine + theirs)
@@ -56,7 +56,7 @@ class Alignment:
         E[:, 6] = arm * range_m / base_m  # what turns one camera against the other moves along the sight
         return E @ self.mean, E @ self.covariance @ E.T
 
-    def told(self, bearing_rad: float) -> str:
+    def as_sentence(self, bearing_rad: float) -> str:
         """In words, for a head that looks in this direction: about which axis it is off, and how much."""
         roll, tilt, pan = np.degrees(rot_z(bearing_rad).T @ self.mean[:3])
         shift_mm = 1e3 * float(np.linalg.norm(self.mean[3:6]))

@@ -108,15 +108,17 @@ class HeadWatch:
             if isinstance(found, str):
                 why = found
                 continue
-            sofar = found if sofar is None else sofar.joined(found)
+            sofar = found if sofar is None else sofar.fuse(found)
             if not self._wrong(sofar, rover):
-                self.note = f"head: fine, {sofar.told(self._bearing(rover))}"
+                self.note = f"head: fine, {sofar.as_sentence(self._bearing(rover))}"
                 return None
         if sofar is None:
             self.note = f"head: unknown, {why}"
             return None
         off_m = float(np.linalg.norm(sofar.error_at(self._chain, np.array(rover.position_site_m))[0]))
-        self.note = f"head off by {sofar.told(self._bearing(rover))}: {off_m * 1e3:.0f} mm at the rover"
+        self.note = (
+            f"head off by {sofar.as_sentence(self._bearing(rover))}: {off_m * 1e3:.0f} mm at the rover"
+        )
         return self.note
 
     def _wrong(self, found: Alignment, rover: PoseEstimate) -> bool:

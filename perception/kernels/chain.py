@@ -18,7 +18,7 @@ from perception.kernels.rotations import product
 STATE_SIZE = 10
 
 
-class Head(NamedTuple):
+class HeadChain(NamedTuple):
     """The pan-tilt unit: rotations before the pan axis and between the axes (3, 3), zeros (2,) of pan and
     tilt, mast height."""
 
@@ -28,7 +28,7 @@ class Head(NamedTuple):
     mast_height_m: float
 
 
-class Cabin(NamedTuple):
+class CabinChain(NamedTuple):
     """The cabin: arm pivot (3,) in the body, arm length, plate (3,) in the cabin's axes [m]."""
 
     arm_pivot_body_m: Array
@@ -37,7 +37,7 @@ class Cabin(NamedTuple):
 
 
 @compiled
-def head_turns(head: Head, pan_rad: float, tilt_rad: float) -> tuple[Array, Array, Array]:
+def head_turns(head: HeadChain, pan_rad: float, tilt_rad: float) -> tuple[Array, Array, Array]:
     """Rotation (3, 3) of `ih` in `site` at these encoder readings, and its derivatives by pan and tilt."""
     pan, tilt = pan_rad + head.zeros_rad[0], tilt_rad + head.zeros_rad[1]
     cp, sp, ct, st = math.cos(pan), math.sin(pan), math.cos(tilt), math.sin(tilt)
@@ -52,7 +52,7 @@ def head_turns(head: Head, pan_rad: float, tilt_rad: float) -> tuple[Array, Arra
 
 @compiled
 def points_in_body(
-    cabin: Cabin, points_plc_m: Array, arm_rad: float, cabin_rad: float
+    cabin: CabinChain, points_plc_m: Array, arm_rad: float, cabin_rad: float
 ) -> tuple[Array, Array]:
     """Points (n, 3) of `plc` in `body`, and their derivatives by (arm, cabin), (n, 3, 2)."""
     points, by_joints = np.empty((len(points_plc_m), 3)), np.zeros((len(points_plc_m), 3, 2))
@@ -71,7 +71,7 @@ def points_in_body(
 @compiled
 def project_points(
     optics: Optics,
-    head: Head,
+    head: HeadChain,
     points_site_m: Array,
     pan_rad: float,
     tilt_rad: float,
@@ -115,8 +115,8 @@ def project_points(
 @compiled
 def project(
     optics: Optics,
-    head: Head,
-    cabin: Cabin,
+    head: HeadChain,
+    cabin: CabinChain,
     markers_plc_m: Array,
     rotation: Array,
     position_m: Array,

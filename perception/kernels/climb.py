@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from executive.core.types import Array
-from perception.kernels.chain import STATE_SIZE, Cabin, Head, project
+from perception.kernels.chain import STATE_SIZE, CabinChain, HeadChain, project
 from perception.kernels.compiled import compiled
-from perception.kernels.light import joined, local_fits
+from perception.kernels.light import local_fits, normal_equations_with_light
 from perception.kernels.linear import factor, solve
 from perception.kernels.optics import Optics
-from perception.kernels.readings import Measured, add_readings
+from perception.kernels.readings import WeightedReadings, add_readings
 from perception.kernels.rotations import moved
 
 _MAX_STEPS = 100
@@ -38,10 +38,10 @@ class Task(NamedTuple):
     """The rig with its markers (n, 3), readings and images, and which fluxes (n, k) change together."""
 
     optics: Optics
-    head: Head
-    cabin: Cabin
+    head: HeadChain
+    cabin: CabinChain
     markers_plc_m: Array
-    measured: Measured
+    measured: WeightedReadings
     shown: Shown
     groups: Array
 
@@ -87,7 +87,7 @@ def point_at(task: Task, place: Place) -> Point:
         for m in range(n):
             for k in range(by_flux.shape[2]):
                 by_flux[c, m, k] = shown.gain[c, m] * task.groups[m, k]
-    H, g = joined(J, by_flux, information, score)
+    H, g = normal_equations_with_light(J, by_flux, information, score)
     chi2 = add_readings(task.measured, rotation, position_m, angles, H, g)
     return Point(gain - chi2, g, H, J, information, score, gain, chi2)
 

@@ -44,12 +44,13 @@ def _on_disk(kernel: Any) -> bool:
 
 
 def _cache_of(function: Callable[..., object]) -> Any:
-    """Goes stale with any file of the function's folder: numba looks at the function's own file alone, and
-    would go on calling what another file said before."""
+    """Named by all files of the function's folder. Numba looks at the function's own file alone: it would go
+    on calling what another file said before, and fail on reading types that are no longer there."""
     numba: Any = caching  # which has no types
     cache = numba.FunctionCache(function)
     stamp = _sources(Path(function.__code__.co_filename).parent)
-    cache._cache_file = numba.IndexDataCacheFile(cache.cache_path, cache._impl.filename_base, stamp)
+    name = f"{cache._impl.filename_base}-{stamp[:16]}"
+    cache._cache_file = numba.IndexDataCacheFile(cache.cache_path, name, stamp)
     return cache
 
 

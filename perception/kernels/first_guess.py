@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from executive.core.types import Array
-from perception.kernels.chain import Cabin, Head, head_turns, points_in_body
+from perception.kernels.chain import CabinChain, HeadChain, head_turns, points_in_body
 from perception.kernels.compiled import compiled
 from perception.kernels.rotations import product
 
@@ -53,7 +53,7 @@ def plane_guess(points_m: Array, markers_m: Array) -> tuple[Array, Array, bool]:
 
 @compiled
 def body_guess(
-    head: Head, cabin: Cabin, points_ih_m: Array, markers_plc_m: Array, angles_rad: Array
+    head: HeadChain, cabin: CabinChain, points_ih_m: Array, markers_plc_m: Array, angles_rad: Array
 ) -> tuple[Array, Array, bool]:
     """Rotation and position of the body in site, from the plane seen at points (n, 3) in `ih`; see above."""
     ih_plc, plane_ih_m, spanned = plane_guess(points_ih_m, markers_plc_m)

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from executive.core.types import Array
-from perception.kernels.chain import STATE_SIZE, Cabin, Head, project
+from perception.kernels.chain import STATE_SIZE, CabinChain, HeadChain, project
 from perception.kernels.compiled import compiled
 from perception.kernels.linear import factor, inverted, solve
 from perception.kernels.optics import Optics
-from perception.kernels.readings import Measured, add_readings
+from perception.kernels.readings import WeightedReadings, add_readings
 from perception.kernels.rotations import moved
 
 _MAX_STEPS = 20
@@ -20,19 +20,19 @@ _CONVERGED = 1e-7  # m and rad
 _MAX_TURN_RAD = 0.5  # longest rotation of one step
 
 
-class Problem(NamedTuple):
+class PoseProblem(NamedTuple):
     """The rig, its markers (n, 3), the readings, and centres (c, n, 2) with weights (c, n, 2, 2)."""
 
     optics: Optics
-    head: Head
-    cabin: Cabin
+    head: HeadChain
+    cabin: CabinChain
     markers_plc_m: Array
-    measured: Measured
+    measured: WeightedReadings
     uv_px: Array
     weights: Array
 
 
-class Found(NamedTuple):
+class PoseFit(NamedTuple):
     """A state with its body's covariance (6, 6), chi-square, pixels (c, n, 2) and what measured ones are off
     them, NaN where not seen."""
 
@@ -64,7 +64,7 @@ def weights_of(uv_px: Array, covariance_px2: Array) -> tuple[Array, int]:
 
 @compiled
 def normal_equations(
-    problem: Problem, rotation: Array, position_m: Array, angles: Array
+    problem: PoseProblem, rotation: Array, position_m: Array, angles: Array
 ) -> tuple[Array, Array, float]:
     """Information (10, 10), its lower half, right-hand side (10,), chi-square at a state (eqs. 10, 11)."""
     optics, head, cabin, markers_plc_m, measured, uv_px, weights = problem
@@ -88,7 +88,7 @@ def normal_equations(
 
 
 @compiled
-def gauss_newton(problem: Problem, rotation: Array, position_m: Array, angles: Array) -> Found:
+def gauss_newton(problem: PoseProblem, rotation: Array, position_m: Array, angles: Array) -> PoseFit:
     """The state that fits best, from a start (rotation, position, angles)."""
     H, g, cost = normal_equations(problem, rotation, position_m, angles)
     longest, steps = math.inf, 0
@@ -112,7 +112,7 @@ def gauss_newton(problem: Problem, rotation: Array, position_m: Array, angles: A
         for k in range(uv.shape[1]):
             if weights[c, k, 0, 0] != 0.0:
                 residual[c, k] = uv_px[c, k] - uv[c, k]
-    return Found(rotation, position_m, angles, inverted(H, 6), cost, steps, converged, uv, residual)
+    return PoseFit(rotation, position_m, angles, inverted(H, 6), cost, steps, converged, uv, residual)
 
 
 @compiled

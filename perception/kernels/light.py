@@ -147,7 +147,9 @@ def centre_fit(
 
 
 @compiled
-def joined(J: Array, light_by_flux: Array, information: Array, score: Array) -> tuple[Array, Array]:
+def normal_equations_with_light(
+    J: Array, light_by_flux: Array, information: Array, score: Array
+) -> tuple[Array, Array]:
     """Information (s, s) and gradient (s,) over the state of ten and the fluxes, from local fits.
 
     J (c, n, 2, 10) are the pixels by the state, `light_by_flux` (c, n, k) each marker's light by the fluxes.

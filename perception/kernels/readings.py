@@ -14,7 +14,7 @@ from perception.kernels.rotations import log_map
 _LEVEL_FLOOR = 1e-12  # of a rover on its nose, whose roll is not defined
 
 
-class Measured(NamedTuple):
+class WeightedReadings(NamedTuple):
     """Readings with their weights (inverse variances), zero where there is none.
 
     encoder_rad (4,) as (pan, tilt, arm, cabin), tilt_rad (2,) as (roll, pitch), a prior pose with its weight
@@ -47,7 +47,7 @@ def roll_pitch(rotation: Array) -> tuple[float, float, Array]:
 
 @compiled
 def add_readings(
-    measured: Measured, rotation: Array, position_m: Array, angles: Array, H: Array, g: Array
+    measured: WeightedReadings, rotation: Array, position_m: Array, angles: Array, H: Array, g: Array
 ) -> float:
     """Add the readings at a state to its normal equations in place; returns their share of chi-square."""
     cost = 0.0
@@ -62,7 +62,7 @@ def add_readings(
 
 
 @compiled
-def _add_tilt(measured: Measured, rotation: Array, H: Array, g: Array) -> float:
+def _add_tilt(measured: WeightedReadings, rotation: Array, H: Array, g: Array) -> float:
     roll, pitch, J = roll_pitch(rotation)
     off_roll, off_pitch = measured.tilt_rad[0] - roll, measured.tilt_rad[1] - pitch
     for i in range(3):
@@ -74,7 +74,7 @@ def _add_tilt(measured: Measured, rotation: Array, H: Array, g: Array) -> float:
 
 
 @compiled
-def _add_prior(measured: Measured, rotation: Array, position_m: Array, H: Array, g: Array) -> float:
+def _add_prior(measured: WeightedReadings, rotation: Array, position_m: Array, H: Array, g: Array) -> float:
     if not measured.prior_weight.any():
         return 0.0
     off, turned, cost = np.empty(6), np.empty((3, 3)), 0.0

@@ -51,7 +51,7 @@ _WHOLE_FRAME_WIDEN = 6.0  # what a search through the whole frame takes the pred
 
 
 @dataclass(frozen=True)
-class Scope:
+class SearchScope:
     """How wide a look is: windows so many times the prediction's (None: full frames), pairs likewise."""
 
     widen: float | None
@@ -69,7 +69,7 @@ class MarkerDetector:
         self._cadence_s = Shot(leds=(0,)).cadence_s
 
     def look(
-        self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
+        self, expectation: Expectation, scope: SearchScope, request: LocaliseRequest, deadline_s: float
     ) -> Steps[Outcome[Observation] | None]:
         """Look for the markers of the expected rover."""
         windows = self._marker_windows(expectation, scope)
@@ -107,7 +107,7 @@ class MarkerDetector:
         return found or full_windows(self._chain)
 
     def _singly(
-        self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
+        self, expectation: Expectation, scope: SearchScope, request: LocaliseRequest, deadline_s: float
     ) -> Steps[Outcome[Observation] | None]:
         """Each LED by itself, reference frames between."""
         markers = len(self._chain.markers_plc_m)
@@ -127,7 +127,7 @@ class MarkerDetector:
         return Outcome(Reason.DONE, value=observation)
 
     def _jointly(
-        self, expectation: Expectation, scope: Scope, request: LocaliseRequest, deadline_s: float
+        self, expectation: Expectation, scope: SearchScope, request: LocaliseRequest, deadline_s: float
     ) -> Steps[Outcome[Observation] | None]:
         """All LEDs coded at once, shot upon shot, until the pose is as good as wanted."""
         wanted, windows = wanted_by(request), self._marker_windows(expectation, scope)
@@ -155,7 +155,12 @@ class MarkerDetector:
         return looked
 
     def _stacked(
-        self, stack: ShotStack, data: Images | Centres, expectation: Expectation, scope: Scope, pairs: int
+        self,
+        stack: ShotStack,
+        data: Images | Centres,
+        expectation: Expectation,
+        scope: SearchScope,
+        pairs: int,
     ) -> Observation:
         """What the shots show so far."""
         state = replace(expectation.state, head_rad=(data.head.pan_rad, data.head.tilt_rad))
@@ -168,7 +173,7 @@ class MarkerDetector:
         tilt = self._devices[INCLINOMETER].read()
         return tilt.roll_rad, tilt.pitch_rad
 
-    def _marker_windows(self, expectation: Expectation, scope: Scope) -> tuple[Window, Window]:
+    def _marker_windows(self, expectation: Expectation, scope: SearchScope) -> tuple[Window, Window]:
         spread = marker_spread(self._rig, plate_view(self._chain, expectation.state).range_m)
         return self.windows(expectation, scope.widen, spread.radius_px + _MARGIN_PX)
 

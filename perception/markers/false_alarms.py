@@ -23,7 +23,7 @@ from scipy.special import ndtri_exp
 from executive.core.types import Array
 from perception.frames.psf import Spread
 from perception.geometry.chain import STATE_SIZE, Chain, ChainState
-from perception.geometry.pose import Readings
+from perception.geometry.pose import PoseReadings
 
 _FREE = [0, 1, 5]  # x, y, heading: searched, not read off anything
 _READ = [i for i in range(STATE_SIZE) if i not in _FREE]
@@ -35,7 +35,7 @@ _FINE_PX = 0.1
 def joint_threshold(
     chain: Chain,
     state: ChainState,
-    readings: Readings,
+    readings: PoseReadings,
     spread: Spread,
     volume: float,
     rate: float,
@@ -70,12 +70,12 @@ def unit_information(
 
 def log_distinct_poses(unit: Array, read: Array, volume: float, snr: float) -> float:
     """Log of the number of poses, 1 or more, that images of this joint SNR tell apart."""
-    told = np.linalg.slogdet(snr**2 * unit + read)[1]
+    log_det = np.linalg.slogdet(snr**2 * unit + read)[1]
     known = np.linalg.slogdet(read[np.ix_(_READ, _READ)])[1]
-    return max(math.log(volume) - 1.5 * math.log(2 * math.pi) + 0.5 * float(told - known), 0.0)
+    return max(math.log(volume) - 1.5 * math.log(2 * math.pi) + 0.5 * float(log_det - known), 0.0)
 
 
-def _read(state: ChainState, readings: Readings) -> Array:
+def _read(state: ChainState, readings: PoseReadings) -> Array:
     """Information (10, 10) of encoders, inclinometers and ground."""
     H = np.zeros((STATE_SIZE, STATE_SIZE))
     readings.add_to(state, H, np.zeros(STATE_SIZE))

@@ -21,7 +21,7 @@ from executive.core.types import Array, Vec2
 from perception.frames.difference import Difference
 from perception.frames.psf import Spread
 from perception.geometry.chain import Chain, ChainState
-from perception.geometry.pose import PoseFit, Readings, chi2_limit
+from perception.geometry.pose import PoseFit, PoseReadings, chi2_limit
 from perception.geometry.prediction import Expectation
 from perception.geometry.rotation import log_map
 from perception.markers.identity import exchanges
@@ -75,7 +75,9 @@ def joint_fix(
     """
     seeing = [camera for camera, one in enumerate(cameras) if one is not None]
     images = [_nothing(len(chain.markers_plc_m)) if one is None else one for one in cameras]
-    readings = Readings.of(chain, sighting_without_centres(chain, expectation, tilt_rad), expectation.surface)
+    readings = PoseReadings.of(
+        chain, sighting_without_centres(chain, expectation, tilt_rad), expectation.surface
+    )
     scene = JointScene(chain, corners_px, spread, expectation, readings, widen, seeing)
     shown = scene.prepared(images)
     found = _find(scene, shown)
@@ -197,7 +199,7 @@ def _nothing(markers: int) -> Difference:
 
 
 def _with_own_fluxes(
-    chain: Chain, patches: MarkerPatches, readings: Readings, best: Likely
+    chain: Chain, patches: MarkerPatches, readings: PoseReadings, best: Likely
 ) -> tuple[Likely, bool]:
     """The pose again with a flux for each marker, where one for all does not fit; dark ones drop out."""
     information = best.local.information[..., 0, 0] * patches.gain**2

@@ -15,7 +15,7 @@ from perception.frames.difference import Difference
 from perception.frames.exposure import emission, flux_expected, plate_view
 from perception.frames.psf import Spread
 from perception.geometry.chain import Chain, ChainState
-from perception.geometry.pose import Readings, Sighting
+from perception.geometry.pose import PoseReadings, Sighting
 from perception.geometry.prediction import Expectation
 from perception.markers.centres import filter_snr
 from perception.markers.false_alarms import joint_threshold
@@ -51,7 +51,7 @@ class JointScene:
     corners_px: Sequence[tuple[int, int]]
     spread: Spread
     expectation: Expectation
-    readings: Readings
+    readings: PoseReadings
     widen: float
     seeing: Sequence[int]
 

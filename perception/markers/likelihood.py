@@ -19,7 +19,7 @@ from perception.frames.difference import Difference
 from perception.frames.psf import Spread
 from perception.geometry.body import Transform
 from perception.geometry.chain import STATE_SIZE, Chain, ChainState
-from perception.geometry.pose import Readings
+from perception.geometry.pose import PoseReadings
 from perception.kernels.climb import Place, Shown, Task, climbed, point_at
 from perception.kernels.compiled import plain
 from perception.kernels.linear import inverted
@@ -95,7 +95,7 @@ class Likely:
 def most_likely(
     chain: Chain,
     patches: MarkerPatches,
-    readings: Readings,
+    readings: PoseReadings,
     start: ChainState,
     flux_counts: Array,
     shared: bool,
@@ -114,7 +114,7 @@ def most_likely(
 
 
 def observed_information(
-    chain: Chain, patches: MarkerPatches, readings: Readings, at: Likely, shared: bool
+    chain: Chain, patches: MarkerPatches, readings: PoseReadings, at: Likely, shared: bool
 ) -> Array:
     """Information (10 + fluxes, square) from the likelihood's own curvature, by central differences.
 
@@ -135,7 +135,7 @@ def observed_information(
 
 
 def task_of(
-    chain: Chain, patches: MarkerPatches, readings: Readings, flux_counts: Array, shared: bool
+    chain: Chain, patches: MarkerPatches, readings: PoseReadings, flux_counts: Array, shared: bool
 ) -> Task:
     """Everything that a state is held against; a marker without flux stays dark."""
     groups = plain(_groups(flux_counts, shared))

@@ -15,7 +15,7 @@ from scipy.stats import norm, qmc
 
 from executive.core.types import Array
 from perception.geometry.chain import STATE_SIZE, Chain, ChainState
-from perception.geometry.pose import Readings
+from perception.geometry.pose import PoseReadings
 from perception.kernels.compiled import plain
 from perception.kernels.likelihoods import log_likelihoods
 from perception.markers.likelihood import (
@@ -34,7 +34,7 @@ _EFFECTIVE = 0.3  # share of draws that must count before moments are believed
 
 
 def posterior(
-    chain: Chain, patches: MarkerPatches, readings: Readings, peak: Likely, shared: bool
+    chain: Chain, patches: MarkerPatches, readings: PoseReadings, peak: Likely, shared: bool
 ) -> tuple[ChainState, Array]:
     """The mean state and the covariance (6, 6) of its body pose, given what found this peak.
 

@@ -39,7 +39,7 @@ class FilterImages:
 
 
 @dataclass(frozen=True, eq=False)
-class Hypothesis:
+class PoseCandidate:
     """A pose and the joint SNR that all markers have there."""
 
     state: ChainState
@@ -116,7 +116,7 @@ class Lattice:
 
     def best(
         self, cameras: Sequence[FilterImages], used: NDArray[np.bool_], at_most: int
-    ) -> list[Hypothesis]:
+    ) -> list[PoseCandidate]:
         """The best hypotheses by the light of the used markers (n,), one a pattern, best first."""
         left, right = cameras
         corners = np.array([left.corner_px, right.corner_px], dtype=np.int64)
@@ -125,7 +125,8 @@ class Lattice:
         scale = 1 / math.sqrt(2 * len(used))
         first = np.argsort(-sums, kind="stable")[:at_most].tolist()
         return [
-            Hypothesis(self._moved(self.poses[k], *shifts[k].tolist()), scale * float(sums[k])) for k in first
+            PoseCandidate(self._moved(self.poses[k], *shifts[k].tolist()), scale * float(sums[k]))
+            for k in first
         ]
 
     def _moved(self, state: ChainState, rows: int, columns: int) -> ChainState:

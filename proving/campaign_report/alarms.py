@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from executive.report.figure import counted
 from executive.report.tables import Table
-from proving.campaign_report.case import Case
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.case import RecordedCase
+from proving.campaign_report.gather import RecordedCampaign
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Alarms:
         return self.hypotheses.total()
 
 
-def alarms(campaign: Campaign) -> Alarms:
+def alarms(campaign: RecordedCampaign) -> Alarms:
     """Add up the alarms that `result.json` tells of as ones that no fault can have caused."""
     cases = campaign.counted
     found = {case.index: [alarm.hypothesis for alarm in case.result.false_alarms] for case in cases}
@@ -41,7 +41,7 @@ def alarms(campaign: Campaign) -> Alarms:
     )
 
 
-def _tried(case: Case) -> list[str]:
+def _tried(case: RecordedCase) -> list[str]:
     """The strategies chosen before any fault took effect."""
     return [row.name for row in case.result.strategies if row.t_s < case.quiet_s]
 

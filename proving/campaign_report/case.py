@@ -24,7 +24,7 @@ _PASSED = frozenset({"passed", "expected failure"})
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class RecordedCase:
     """`found` is None where the case left no result; `journal` is what the campaign noted at its end."""
 
     index: int

@@ -10,8 +10,8 @@ from executive.core.chance import generator
 from executive.report import svg
 from executive.report.axes import Scale, legend
 from executive.report.figure import Figure
-from proving.campaign_report.case import Case
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.case import RecordedCase
+from proving.campaign_report.gather import RecordedCampaign
 from proving.campaign_report.groups import SERIES
 from proving.campaign_report.lengths import length
 from proving.campaign_report.statistics import Estimate, Pairs, median
@@ -21,13 +21,13 @@ _SIDE, _LEFT, _TOP = 400.0, 64.0, 24.0
 
 
 @dataclass(frozen=True)
-class Comparison:
+class CampaignComparison:
     """`first` is what `second` is held against; `couples` are the cases that met the same conditions."""
 
     first: str
     second: str
     key: str
-    couples: tuple[tuple[Case, Case], ...]
+    couples: tuple[tuple[RecordedCase, RecordedCase], ...]
     error_m: Estimate
     """Median over the pairs of the second's error at the end less the first's."""
 
@@ -36,26 +36,26 @@ class Comparison:
         return Pairs.of([(a.passed, b.passed) for a, b in self.couples])
 
 
-def comparisons(campaign: Campaign) -> list[Comparison]:
+def comparisons(campaign: RecordedCampaign) -> list[CampaignComparison]:
     """Every further setting against the first."""
     first, *others = campaign.settings
     return [_comparison(campaign, first, other, f"compare-{n}") for n, other in enumerate(others, 1)]
 
 
-def _comparison(campaign: Campaign, first: str, second: str, key: str) -> Comparison:
+def _comparison(campaign: RecordedCampaign, first: str, second: str, key: str) -> CampaignComparison:
     by_seed = {case.seed: case for case in campaign.of_setting(second)}
     couples = tuple((a, by_seed[a.seed]) for a in campaign.of_setting(first) if a.seed in by_seed)
     errors = [b - a for a, b in _errors_m(couples)]
     rng = generator(campaign.seed, f"report {first} {second}")
-    return Comparison(first, second, key, couples, median(errors, rng))
+    return CampaignComparison(first, second, key, couples, median(errors, rng))
 
 
-def _errors_m(couples: tuple[tuple[Case, Case], ...]) -> list[tuple[float, float]]:
+def _errors_m(couples: tuple[tuple[RecordedCase, RecordedCase], ...]) -> list[tuple[float, float]]:
     known = [(a.result.truth.final_error_m, b.result.truth.final_error_m) for a, b in couples]
     return [(a, b) for a, b in known if a is not None and b is not None]
 
 
-def compared(found: Comparison) -> Figure | None:
+def compared(found: CampaignComparison) -> Figure | None:
     """The fourfold table, the differences, and each pair's errors; None where there is no pair."""
     if not found.couples:
         return None
@@ -76,7 +76,7 @@ def compared(found: Comparison) -> Figure | None:
     return Figure(found.key, title, legend(words) + body, caption)
 
 
-def _figures(found: Comparison) -> str:
+def _figures(found: CampaignComparison) -> str:
     difference, pairs = found.pairs.difference(), found.pairs
     rows = [
         ("pairs", str(pairs.total), ""),
@@ -116,7 +116,7 @@ def _interval(found: Estimate) -> str:
     return f"{_signed(found.low)} to {_signed(found.high)}"
 
 
-def _fourfold(found: Comparison) -> str:
+def _fourfold(found: CampaignComparison) -> str:
     pairs, first, second = found.pairs, escape(found.first), escape(found.second)
     return (
         f"<table class='fourfold'><thead><tr><th></th><th>{second} passed</th><th>{second} did not</th></tr>"
@@ -126,7 +126,7 @@ def _fourfold(found: Comparison) -> str:
     )
 
 
-def _scatter(found: Comparison) -> str:
+def _scatter(found: CampaignComparison) -> str:
     known = _errors_m(found.couples)
     high = max([0.1, *(max(pair) for pair in known)]) * 1.3
     low = min([0.005, *(max(min(pair), 2e-4) for pair in known)]) / 1.3

@@ -8,7 +8,7 @@ from executive.record import FaultStages
 from executive.report import svg
 from executive.report.axes import legend
 from executive.report.figure import Figure
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.gather import RecordedCampaign
 
 _LEFT, _TOP, _CELL_W, _CELL_H, _WIDTH = 216.0, 104.0, 104.0, 30.0, 1100.0
 UNDETECTED = "not detected"
@@ -23,7 +23,7 @@ def matrix(rows: list[FaultStages]) -> dict[str, Counter[str]]:
     return dict(sorted(counts.items()))
 
 
-def detection(campaign: Campaign) -> Figure | None:
+def detection(campaign: RecordedCampaign) -> Figure | None:
     """The matrix as a heat map; None where no fault fired."""
     rows = [row for case in campaign.counted for row in case.faults]
     counts = matrix(rows)

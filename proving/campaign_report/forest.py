@@ -7,8 +7,8 @@ from html import escape
 from executive.report import svg
 from executive.report.axes import Scale, legend
 from executive.report.figure import Figure, counted
-from proving.campaign_report.case import Case
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.case import RecordedCase
+from proving.campaign_report.gather import RecordedCampaign
 from proving.campaign_report.groups import ENDS, SERIES, Group, by_fault, ends, success
 
 _WIDTH, _LEFT, _TOP, _ROW = 1100.0, 216.0, 34.0, 30.0
@@ -17,7 +17,7 @@ _WORDS = 690.0
 _BAR = Scale(0.0, 1.0, 706.0, _WIDTH - 4)
 
 
-def forest(campaign: Campaign) -> Figure | None:
+def forest(campaign: RecordedCampaign) -> Figure | None:
     """A row per fault: cases, success with interval per setting, composition of ends."""
     if not campaign.cases:
         return None
@@ -39,7 +39,7 @@ def forest(campaign: Campaign) -> Figure | None:
     return Figure("success", "Success by fault", legend(entries) + drawn, _caption(campaign))
 
 
-def _caption(campaign: Campaign) -> str:
+def _caption(campaign: RecordedCampaign) -> str:
     uncounted = len(campaign.cases) - len(campaign.counted)
     left_out = (
         f" {counted(uncounted, 'case')} on the right not counted on the left: lost to the infrastructure, or "
@@ -87,7 +87,7 @@ def _row(group: Group, settings: tuple[str, ...], y: float, height: float) -> st
     return "".join(body)
 
 
-def _interval(cases: list[Case], y: float, colour: str) -> str:
+def _interval(cases: list[RecordedCase], y: float, colour: str) -> str:
     counted = [case for case in cases if case.counts]
     if not counted:
         return svg.text(_WORDS, y + 4, "none counted", class_="tick end")
@@ -105,7 +105,7 @@ def _interval(cases: list[Case], y: float, colour: str) -> str:
     )
 
 
-def _bar(cases: list[Case], middle: float) -> str:
+def _bar(cases: list[RecordedCase], middle: float) -> str:
     body, start = [], 0.0
     for end, count in ends(cases).items():
         words, colour = ENDS[end]

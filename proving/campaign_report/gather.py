@@ -13,18 +13,18 @@ import yaml
 
 from executive.core.errors import RecordError
 from proving.campaign.result import CaseResult, read_case
-from proving.campaign_report.case import Case
+from proving.campaign_report.case import RecordedCase
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times faster where libyaml is there
 
 
 @dataclass(frozen=True, eq=False)
-class Campaign:
+class RecordedCampaign:
     """A campaign as the report sees it. `missing` holds a sentence per thing that is not there."""
 
     folder: Path
     about: Mapping[str, Any]
-    cases: tuple[Case, ...]
+    cases: tuple[RecordedCase, ...]
     missing: tuple[str, ...]
 
     @property
@@ -36,7 +36,7 @@ class Campaign:
         return int(self.about.get("seed") or 0)
 
     @cached_property
-    def counted(self) -> tuple[Case, ...]:
+    def counted(self) -> tuple[RecordedCase, ...]:
         """The cases that say something of the system."""
         return tuple(case for case in self.cases if case.counts)
 
@@ -48,7 +48,7 @@ class Campaign:
         ordered = [str(name) for name in declared if str(name) in used]
         return tuple(ordered + sorted(used - set(ordered))) or ("",)
 
-    def of_setting(self, setting: str) -> tuple[Case, ...]:
+    def of_setting(self, setting: str) -> tuple[RecordedCase, ...]:
         """The counted cases of one setting."""
         return tuple(case for case in self.counted if case.setting == setting)
 
@@ -58,7 +58,7 @@ class Campaign:
         return tuple(sorted({kind for case in self.cases for kind in case.kinds}))
 
 
-def gather(folder: Path) -> Campaign:
+def gather(folder: Path) -> RecordedCampaign:
     """Read a campaign folder; RecordError if it is none or its campaign.json cannot be read."""
     path = folder / "campaign.json"
     if not path.is_file():
@@ -76,11 +76,11 @@ def gather(folder: Path) -> Campaign:
     )
     if not cases:
         missing.append("cases/: no case was begun")
-    return Campaign(folder, about, cases, tuple(missing))
+    return RecordedCampaign(folder, about, cases, tuple(missing))
 
 
-def _case(index: int, folder: Path, journal: Mapping[str, Any], missing: list[str]) -> Case:
-    return Case(index, folder, _result(folder, missing), _scenario(folder / "scenario.yaml"), journal)
+def _case(index: int, folder: Path, journal: Mapping[str, Any], missing: list[str]) -> RecordedCase:
+    return RecordedCase(index, folder, _result(folder, missing), _scenario(folder / "scenario.yaml"), journal)
 
 
 def _result(folder: Path, missing: list[str]) -> CaseResult | None:

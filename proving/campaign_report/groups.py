@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from proving.campaign_report.case import LOST, Case
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.case import LOST, RecordedCase
+from proving.campaign_report.gather import RecordedCampaign
 from proving.campaign_report.statistics import Estimate, share
 
 SERIES = ("var(--s0)", "var(--s1)", "var(--s2)", "var(--s3)")
@@ -30,10 +30,10 @@ class Group(NamedTuple):
     """Some cases and what they have in common."""
 
     label: str
-    cases: Sequence[Case]
+    cases: Sequence[RecordedCase]
 
 
-def by_fault(campaign: Campaign) -> list[Group]:
+def by_fault(campaign: RecordedCampaign) -> list[Group]:
     """All cases, those without a fault, then those with each kind of fault, the least successful first.
 
     A case with two kinds counts under both.
@@ -49,20 +49,20 @@ def _any(group: Group) -> bool:
     return any(case.counts for case in group.cases)
 
 
-def success(cases: Iterable[Case]) -> Estimate:
+def success(cases: Iterable[RecordedCase]) -> Estimate:
     """The share of the counted cases that passed."""
     counted = [case for case in cases if case.counts]
     return share(sum(case.passed for case in counted), len(counted))
 
 
-def end_of(case: Case) -> str:
+def end_of(case: RecordedCase) -> str:
     """The kind of end a case came to."""
     if case.outcome == "reached" and not case.passed:
         return "otherwise"
     return case.outcome if case.outcome in ENDS else "error"
 
 
-def ends(cases: Iterable[Case]) -> dict[str, int]:
+def ends(cases: Iterable[RecordedCase]) -> dict[str, int]:
     """How often each kind of end came, in the order of ENDS; those that never came left out."""
     counted = Counter(end_of(case) for case in cases)
     return {end: counted[end] for end in ENDS if counted[end]}

@@ -12,14 +12,14 @@ from executive.report.figure import counted, duration
 from executive.report.tiles import Tile
 from proving.campaign_report.alarms import Alarms
 from proving.campaign_report.case import INFRASTRUCTURE
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.gather import RecordedCampaign
 from proving.campaign_report.groups import success
 from proving.campaign_report.lengths import length
 
 _CLASSES = {INFRASTRUCTURE: "lost to the infrastructure", "sut": "broke the system under test"}
 
 
-def headline(campaign: Campaign) -> list[Tile]:
+def headline(campaign: RecordedCampaign) -> list[Tile]:
     """The three figures that matter most: safety, success, cases."""
     unsafe = [case for case in campaign.cases if case.unsafe]
     known = sum(case.found is not None for case in campaign.cases)
@@ -37,7 +37,7 @@ def headline(campaign: Campaign) -> list[Tile]:
     ]
 
 
-def tiles(campaign: Campaign, alarms: Alarms) -> list[Tile]:
+def tiles(campaign: RecordedCampaign, alarms: Alarms) -> list[Tile]:
     """The rest, a row of smaller ones."""
     fired = [row for case in campaign.counted for row in case.faults if row.fired]
     errors = [e for case in campaign.counted if (e := case.result.truth.final_error_m) is not None]
@@ -55,7 +55,7 @@ def tiles(campaign: Campaign, alarms: Alarms) -> list[Tile]:
     ]
 
 
-def _success(campaign: Campaign) -> Tile:
+def _success(campaign: RecordedCampaign) -> Tile:
     found = success(campaign.counted)
     if math.isnan(found.value):
         return Tile("success", "–", "no case counts")
@@ -64,7 +64,7 @@ def _success(campaign: Campaign) -> Tile:
     return Tile("success", f"{100 * found.value:.1f} %", f"{hits} of {len(campaign.counted)}; {interval}")
 
 
-def _classes(campaign: Campaign) -> str:
+def _classes(campaign: RecordedCampaign) -> str:
     """How many were lost, and to what."""
     classes = Counter(case.class_ for case in campaign.cases if case.class_)
     invalid = sum(case.outcome == "invalid" for case in campaign.cases)
@@ -90,6 +90,6 @@ def _tail(errors: list[float]) -> str:
     return f"median; 95 % below {length(float(np.percentile(errors, 95)))}"
 
 
-def _wall(campaign: Campaign) -> str:
+def _wall(campaign: RecordedCampaign) -> str:
     wall_s = sum((case.result.wall_s or 0.0) for case in campaign.cases)
     return f"in {duration(wall_s)} of computing".replace("\u00a0", " ")

@@ -12,7 +12,7 @@ from executive.record import FaultStages
 from executive.report import svg
 from executive.report.axes import Scale, legend
 from executive.report.figure import Figure, counted, duration
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.gather import RecordedCampaign
 
 _WIDTH, _LEFT, _TOP, _ROW, _PANEL, _GAP = 1100.0, 150.0, 34.0, 26.0, 255.0, 62.0
 _TICKS_S = {10.0: "10 s", 60.0: "1 min", 600.0: "10 min", 3600.0: "1 h", 14400.0: "4 h"}
@@ -34,7 +34,7 @@ STAGES = (
 )
 
 
-def latencies(campaign: Campaign) -> Figure | None:
+def latencies(campaign: RecordedCampaign) -> Figure | None:
     """Three strips per kind of fault; None where no fault fired."""
     rows = [row for case in campaign.counted for row in case.faults if row.fired]
     if not rows:

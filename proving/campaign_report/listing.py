@@ -6,8 +6,8 @@ import math
 from typing import NamedTuple
 
 from executive.report.figure import duration
-from proving.campaign_report.case import Case
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.case import RecordedCase
+from proving.campaign_report.gather import RecordedCampaign
 from proving.campaign_report.groups import ENDS, end_of
 from proving.campaign_report.lengths import length
 from proving.campaign_report.worst import command
@@ -27,12 +27,12 @@ HEADER = (
 )
 
 
-def rows(campaign: Campaign) -> list[tuple[Cell, ...]]:
+def rows(campaign: RecordedCampaign) -> list[tuple[Cell, ...]]:
     """A row per case, in the order of their numbers."""
     return [_row(campaign, case) for case in campaign.cases]
 
 
-def _row(campaign: Campaign, case: Case) -> tuple[Cell, ...]:
+def _row(campaign: RecordedCampaign, case: RecordedCase) -> tuple[Cell, ...]:
     error, share, tilt = case.result.truth.final_error_m, case.cross_share, case.result.truth.max_tilt_deg
     mission_s = case.result.mission_s if case.found is not None else None
     diagnosed = sorted({row.concluded for row in case.faults if row.concluded})
@@ -53,7 +53,7 @@ def _row(campaign: Campaign, case: Case) -> tuple[Cell, ...]:
     )
 
 
-def _verdict(case: Case) -> Cell:
+def _verdict(case: RecordedCase) -> Cell:
     if case.unsafe:
         return Cell("unsafe", "0", "bad")
     words = str(case.note.verdict or ("passed" if case.passed else "failed"))

@@ -5,13 +5,13 @@ from __future__ import annotations
 from executive.report import svg
 from executive.report.axes import Scale, legend, ticks
 from executive.report.figure import Figure
-from proving.campaign_report.case import Case
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.case import RecordedCase
+from proving.campaign_report.gather import RecordedCampaign
 
 _WIDTH, _LEFT, _TOP, _BOTTOM = 1100.0, 52.0, 30.0, 330.0
 
 
-def margins(campaign: Campaign) -> Figure | None:
+def margins(campaign: RecordedCampaign) -> Figure | None:
     """Worst tilt over worst cross-track error, a dot a case; None where no truth is known."""
     placed = [
         (case, x, y)
@@ -78,7 +78,7 @@ def _limit(across: Scale, up: Scale, limit_deg: float | None) -> str:
     )
 
 
-def _dot(case: Case, x: float, y: float) -> str:
+def _dot(case: RecordedCase, x: float, y: float) -> str:
     said = svg.title(f"case {case.index}: {', '.join(case.kinds) or 'no fault'}, {case.outcome}")
     if case.unsafe:
         corners = [(x, y - 7), (x + 7, y), (x, y + 7), (x - 7, y)]

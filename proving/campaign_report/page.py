@@ -15,7 +15,7 @@ from proving.campaign_report.alarms import alarm_table, alarms
 from proving.campaign_report.comparison import compared, comparisons
 from proving.campaign_report.detection import detection
 from proving.campaign_report.forest import forest
-from proving.campaign_report.gather import Campaign, gather
+from proving.campaign_report.gather import RecordedCampaign, gather
 from proving.campaign_report.headline import headline, tiles
 from proving.campaign_report.latencies import latencies
 from proving.campaign_report.margins import margins
@@ -42,7 +42,7 @@ def write_campaign_report(folder: Path) -> Path:
     return path
 
 
-def render(campaign: Campaign) -> str:
+def render(campaign: RecordedCampaign) -> str:
     """The page as text."""
     figures, absent = [], []
     for make, title, otherwise in _FIGURES:
@@ -80,6 +80,6 @@ def _ordered(figures: list[Figure], pairs: list[Figure]) -> list[Figure]:
     return figures[:1] + pairs + figures[1:]
 
 
-def _command(campaign: Campaign) -> str:
+def _command(campaign: RecordedCampaign) -> str:
     command = campaign.about.get("command")
     return " ".join(command) if isinstance(command, list) else str(command or "not known")

@@ -11,8 +11,8 @@ from executive.core.units import UnitError, split
 from executive.report import svg
 from executive.report.axes import Scale, legend, ticks
 from executive.report.figure import Figure
-from proving.campaign_report.case import Case
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.case import RecordedCase
+from proving.campaign_report.gather import RecordedCampaign
 from proving.campaign_report.statistics import share
 
 _PARTS = ("world", "rig", "mission")
@@ -25,12 +25,12 @@ class Varied(NamedTuple):
 
     key: str
     unit: str
-    values: tuple[tuple[Case, float], ...]
+    values: tuple[tuple[RecordedCase, float], ...]
 
 
-def varied(campaign: Campaign) -> list[Varied]:
+def varied(campaign: RecordedCampaign) -> list[Varied]:
     """The numeric parameters of world, rig and mission that take more than one value."""
-    found: dict[str, list[tuple[Case, str]]] = {}
+    found: dict[str, list[tuple[RecordedCase, str]]] = {}
     for case in campaign.counted:
         for part in _PARTS:
             for key, text in _leaves(case.scenario.get(part), part):
@@ -40,7 +40,7 @@ def varied(campaign: Campaign) -> list[Varied]:
     return [one for one in made if one is not None]
 
 
-def parameters(campaign: Campaign) -> Figure | None:
+def parameters(campaign: RecordedCampaign) -> Figure | None:
     """A panel per parameter: success over its range; None where nothing numeric was varied."""
     found = varied(campaign)
     if not found:
@@ -71,7 +71,7 @@ def _leaves(data: object, key: str) -> Iterator[tuple[str, str]]:
         yield key, str(data)
 
 
-def _varied(key: str, pairs: list[tuple[Case, str]]) -> Varied | None:
+def _varied(key: str, pairs: list[tuple[RecordedCase, str]]) -> Varied | None:
     try:
         read = [(case, *split(text)) for case, text in pairs]
     except UnitError:
@@ -114,7 +114,7 @@ def _axes(across: Scale, up: Scale, low: float, high: float) -> str:
     return "".join(body)
 
 
-def _bins(one: Varied) -> list[list[tuple[Case, float]]]:
+def _bins(one: Varied) -> list[list[tuple[RecordedCase, float]]]:
     """Cases by value where there are few values, else in fifths of equal number."""
     ordered = sorted(one.values, key=lambda pair: pair[1])
     distinct = sorted({value for _, value in ordered})

@@ -10,15 +10,15 @@ from executive.core.errors import RecordError
 from executive.record.events import TerrainEvent
 from executive.report import layers, palette, svg
 from executive.report.frame import MapFrame, corridor
-from executive.report.gather import Run, gather
+from executive.report.gather import RecordedRun, gather
 from executive.report.relief import shaded
-from proving.campaign_report.case import Case
+from proving.campaign_report.case import RecordedCase
 
 WIDTH, HEIGHT = 340.0, 210.0
 _RELIEF_PX = 150
 
 
-def thumbnail(case: Case) -> str:
+def thumbnail(case: RecordedCase) -> str:
     """The map as SVG; a sentence where the case left no record to draw."""
     try:
         run = gather(case.folder)
@@ -47,7 +47,7 @@ def _nothing() -> str:
     return svg.drawing(WIDTH, HEIGHT, [words], class_="map", aria_label="no map")
 
 
-def _frame(run: Run) -> MapFrame | None:
+def _frame(run: RecordedRun) -> MapFrame | None:
     """The frame that holds the corridor and the tracks, centred in the card."""
     xy = [p for s in run.segments for p in corridor(s, s.off_track_m)]
     xy += [(p.x_m, p.y_m) for p in run.estimates]
@@ -61,7 +61,7 @@ def _frame(run: Run) -> MapFrame | None:
     return MapFrame(x - half_x, y - half_y, x + half_x, y + half_y, scale)
 
 
-def _ground(run: Run, frame: MapFrame) -> str:
+def _ground(run: RecordedRun, frame: MapFrame) -> str:
     """The terrain cut to the frame and shaded coarsely: a page holds a dozen of these."""
     plain = svg.element("rect", width=WIDTH, height=HEIGHT, fill="#efeae0")
     found = run.history.last(TerrainEvent) or run.world.last(TerrainEvent)
@@ -100,7 +100,7 @@ def _range(start_m: float, end_m: float, step_m: float, count: int) -> tuple[int
     return max(0, int(start_m / step_m) - 1), min(count, int(end_m / step_m) + 3)
 
 
-def _end(run: Run, frame: MapFrame) -> str:
+def _end(run: RecordedRun, frame: MapFrame) -> str:
     """The way-points, and where the rover truly came to stand."""
     goals = "".join(
         svg.element("circle", cx=frame.x(s.end.x_m), cy=frame.y(s.end.y_m), r=1.8, fill=palette.INK)

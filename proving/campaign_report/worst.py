@@ -10,8 +10,8 @@ from html import escape
 from executive.report.axes import legend
 from executive.report.figure import Figure, duration
 from executive.report.palette import BAD, ESTIMATE, TRUTH
-from proving.campaign_report.case import INFRASTRUCTURE, LOST, Case
-from proving.campaign_report.gather import Campaign
+from proving.campaign_report.case import INFRASTRUCTURE, LOST, RecordedCase
+from proving.campaign_report.gather import RecordedCampaign
 from proving.campaign_report.groups import ENDS, end_of
 from proving.campaign_report.lengths import length
 from proving.campaign_report.thumbnail import thumbnail
@@ -21,7 +21,7 @@ _ORDER = ("error", LOST, "time_limit", "safe_hold", "help", "otherwise", "invali
 _PATH = re.compile(r"[\w#]+(?:/[\w#]+)+/([\w#]+)")
 
 
-def ranked(cases: Iterable[Case]) -> list[Case]:
+def ranked(cases: Iterable[RecordedCase]) -> list[RecordedCase]:
     """Worst first: broken safety, the kind of end, the true error at the end; the infrastructure's last."""
     return sorted(
         cases,
@@ -35,7 +35,7 @@ def ranked(cases: Iterable[Case]) -> list[Case]:
     )
 
 
-def worst(campaign: Campaign) -> Figure | None:
+def worst(campaign: RecordedCampaign) -> Figure | None:
     """Up to a dozen cards; None where there is no case at all."""
     chosen = _unlike(ranked(campaign.cases))[:MOST]
     if not chosen:
@@ -58,7 +58,7 @@ def worst(campaign: Campaign) -> Figure | None:
 _ONE_OF_EACH = " Of safe cases that met the same conditions under several settings the worst stands for all."
 
 
-def _unlike(cases: list[Case]) -> list[Case]:
+def _unlike(cases: list[RecordedCase]) -> list[RecordedCase]:
     """The first case of every seed, and every unsafe one."""
     seen: set[int | None] = set()
     kept = []
@@ -69,12 +69,12 @@ def _unlike(cases: list[Case]) -> list[Case]:
     return kept
 
 
-def command(campaign: Campaign, case: Case) -> str:
+def command(campaign: RecordedCampaign, case: RecordedCase) -> str:
     """What repeats the case, from the folder that the campaign folder lies in."""
     return f"longarm campaign rerun {campaign.folder.name} {case.index}"
 
 
-def story(case: Case) -> str:
+def story(case: RecordedCase) -> str:
     """What happened, in one line: the faults, how it ended and why, what was broken."""
     faults = ", ".join(_fault(row.kind, row.t_on_s, row.fired) for row in case.faults) or "no fault"
     tried = len(case.result.strategies)
@@ -88,7 +88,7 @@ def _fault(kind: str, t_on_s: float | None, fired: bool) -> str:
     return f"{name} at {duration(t_on_s)}" if fired and t_on_s is not None else f"{name} (never fired)"
 
 
-def _ending(case: Case) -> str:
+def _ending(case: RecordedCase) -> str:
     if case.outcome == LOST:
         cause = case.note.detail or case.note.cause or "left no result"
         return f"lost ({case.class_ or 'unknown'}): {cause}"
@@ -99,7 +99,7 @@ def _ending(case: Case) -> str:
     return f"{ENDS[end_of(case)][0]}" + (f", but not {unmet[0]}" if unmet else "")
 
 
-def _card(campaign: Campaign, case: Case) -> str:
+def _card(campaign: RecordedCampaign, case: RecordedCase) -> str:
     words, colour = ENDS[end_of(case)]
     error = case.result.truth.final_error_m
     figures = [

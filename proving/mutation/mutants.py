@@ -23,7 +23,7 @@ from executive.tree.ports import PortSpec
 from executive.tree.spec import NodeSpec, TreeSpec, walk
 from executive.tree.strategies import strategy_trees
 from proving.coverage.universe import Universe
-from proving.mutation.operators import ABSENT, OPERATORS, Change, Scene, defaults
+from proving.mutation.operators import ABSENT, OPERATORS, Change, MutationSite, defaults
 from proving.mutation.sites import sites
 
 
@@ -107,7 +107,7 @@ def _mutants(path: Path, spec: TreeSpec) -> Iterator[Mutant]:
     source, types = read(path, shown(path)), node_types()
     names = _names(spec)
     before = dumped(source.data)
-    scene = Scene(source, types, lambda word: _ports(word, types, spec))
+    scene = MutationSite(source, types, lambda word: _ports(word, types, spec))
 
     def mutant(node: str, operator: str, change: Change) -> Mutant:
         return Mutant(path, node, operator, change.what, before, dumped(changed(source, change)))

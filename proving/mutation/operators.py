@@ -36,7 +36,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Scene:
+class MutationSite:
     """What an operator sees: the file, the ports of a type of node, its kind where it is no tree."""
 
     source: Source
@@ -51,10 +51,10 @@ class Scene:
         return str(data.get("name") or next(key for key in data if key not in BESIDE))
 
 
-Operator = Callable[[Scene, Site], Iterator[Change]]
+Operator = Callable[[MutationSite, Site], Iterator[Change]]
 
 
-def swap_children(scene: Scene, site: Site) -> Iterator[Change]:
+def swap_children(scene: MutationSite, site: Site) -> Iterator[Change]:
     """Two neighbours change places."""
     children = scene.source.get(site.listing) if site.listing else []
     for i in range(len(children) - 1):
@@ -64,7 +64,7 @@ def swap_children(scene: Scene, site: Site) -> Iterator[Change]:
             yield Change(site.listing, swapped, f"swap {first} and {second} ({i + 1}, {i + 2})")
 
 
-def drop_child(scene: Scene, site: Site) -> Iterator[Change]:
+def drop_child(scene: MutationSite, site: Site) -> Iterator[Change]:
     """A child is missing."""
     children = scene.source.get(site.listing) if site.listing else []
     kind = scene.types.get(site.word)
@@ -74,7 +74,7 @@ def drop_child(scene: Scene, site: Site) -> Iterator[Change]:
             yield Change(site.listing, children[:i] + children[i + 1 :], f"drop {label} ({i + 1})")
 
 
-def invert(scene: Scene, site: Site) -> Iterator[Change]:
+def invert(scene: MutationSite, site: Site) -> Iterator[Change]:
     """Success for failure, or a sequence for a selector."""
     kind = scene.types.get(site.word)
     other = kind.control.counterpart if kind is not None and kind.control is not None else None
@@ -85,7 +85,7 @@ def invert(scene: Scene, site: Site) -> Iterator[Change]:
         yield Change(site.place, {inverter().name: {"child": site.data}}, f"invert {scene.label(site.place)}")
 
 
-def unwrap(scene: Scene, site: Site) -> Iterator[Change]:
+def unwrap(scene: MutationSite, site: Site) -> Iterator[Change]:
     """A decorator is missing; `recover` is the one that matters most."""
     kind = scene.types.get(site.word)
     if kind is None or kind.children is not Children.ONE or kind.names_an_item:
@@ -96,7 +96,7 @@ def unwrap(scene: Scene, site: Site) -> Iterator[Change]:
         yield Change(site.place, bare | site.guards, f"drop {site.word}, keep its child")
 
 
-def weaken_guard(scene: Scene, site: Site) -> Iterator[Change]:
+def weaken_guard(scene: MutationSite, site: Site) -> Iterator[Change]:
     """A guard is missing, says the opposite, or is too generous."""
     for word, text in site.guards.items():
         place = (*site.place, word)
@@ -107,7 +107,7 @@ def weaken_guard(scene: Scene, site: Site) -> Iterator[Change]:
             yield Change(place, generous, f"be twice as generous in {word}")
 
 
-def change_literal(scene: Scene, site: Site) -> Iterator[Change]:
+def change_literal(scene: MutationSite, site: Site) -> Iterator[Change]:
     """A number is four times too large or too small, a switch or a word the other one."""
     given = scene.source.get(site.inside)
     if not isinstance(given, dict):

@@ -12,7 +12,7 @@ from executive.core.ports import Backend
 from executive.run import Fault, FaultSpec
 
 if TYPE_CHECKING:
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 
 class Parameters(BaseModel):
@@ -36,7 +36,7 @@ class WorldFault(Fault, Generic[P]):
     def __init__(self, parameters: P) -> None:
         self.p = parameters
         self.level = 0.0
-        self._since: Tally | None = None
+        self._since: WorldActivity | None = None
         self._shown = False
 
     def apply(self, backend: Backend, level: float) -> None:
@@ -62,7 +62,7 @@ class WorldFault(Fault, Generic[P]):
     def step(self, sim: WorldFaults) -> None:
         """Go on; once a tick while active."""
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         """Whether anything goes otherwise by now; `done` is what was done since it became active."""
         raise TypeError(f"{type(self).__name__} has no evidence")
 

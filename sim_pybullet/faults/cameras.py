@@ -14,7 +14,7 @@ from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
     from sim_pybullet.seeing import Lens
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 
 class CameraChoice(Parameters):
@@ -56,7 +56,7 @@ class ImageBlur(WorldFault[Blur]):
     def _blurred(self, camera: int, lens: Lens, level: float) -> Lens:
         return replace(lens, blur_px=self.p.sigma * level) if self.p.has(camera) else lens
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.frames > 0
 
 
@@ -66,7 +66,7 @@ class HeadVibration(WorldFault[Trembling]):
     def act(self, sim: WorldFaults, level: float) -> None:
         sim.world.head.sway_rad = self.p.amplitude * level
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.frames > 1
 
 

@@ -12,7 +12,7 @@ from sim_pybullet.faults.base import Nothing, Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
     from sim_pybullet.head_axis import HeadAxis
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 UNSEEN_RAD = math.radians(0.005)  # half a pixel's part; from here on the head has pointed elsewhere
 
@@ -70,7 +70,7 @@ class PanLocked(WorldFault[Nothing]):
     def act(self, sim: WorldFaults, level: float) -> None:
         sim.world.head.pan.locked = level > 0.0
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return sim.world.head.moving and not sim.world.head.pan.arrived
 
 
@@ -80,7 +80,7 @@ class TiltLocked(WorldFault[Nothing]):
     def act(self, sim: WorldFaults, level: float) -> None:
         sim.world.head.tilt.locked = level > 0.0
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return sim.world.head.moving and not sim.world.head.tilt.arrived
 
 
@@ -91,14 +91,14 @@ class HeadSlow(WorldFault[Slowness]):
         for axis in _axes(sim):
             axis.rate_factor = 1.0 - (1.0 - self.p.factor) * level
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return sim.world.head.moving
 
 
 class _Mispointing:
     """Shows once a frame was exposed while the head pointed elsewhere than its encoders say."""
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.frames > 0 and any(abs(axis.unseen_rad) > UNSEEN_RAD for axis in _axes(sim))
 
 
@@ -142,7 +142,7 @@ class LanderSettling(WorldFault[Settling]):
             ),  # about the axis across: over, not round
         )
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.frames > 0
 
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from sim_pybullet.faults.base import Nothing, WorldFault, spec
 
 if TYPE_CHECKING:
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 BEHIND_RAD = math.radians(0.5)  # a joint this far behind its motor shows that it is locked
 
 
 class _JointFault(WorldFault[Nothing]):
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return sim.world.cabin.behind_rad > BEHIND_RAD
 
 

@@ -14,7 +14,7 @@ from sim_pybullet.faults.cameras import CameraChoice
 
 if TYPE_CHECKING:
     from sim_pybullet.seeing import Lens
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 SUN_STEP_RAD = math.radians(0.5)  # the full tier lights its ground anew at each step
 Half = Annotated[Angle, Field(ge=-math.pi, le=math.pi)]
@@ -61,7 +61,7 @@ class SunMoving(WorldFault[SunPath]):
         share = math.floor(level * steps + 1e-9) / max(steps, 1)
         sim.move_sun(self.p.elevation * share, self.p.azimuth * share)
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.frames > 0 and sim.sun_has_moved()
 
 
@@ -84,7 +84,7 @@ class Cloud(WorldFault[Clouds]):
         phase = 2 * math.pi * (sim.world.clock.now_s - self._began_s) / self.p.period
         sim.see(clouds=1.0 - self.p.depth * self.level * (1 - math.cos(phase)) / 2)
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.frames > 0 and sim.world.seeing.clouds < 1.0
 
 
@@ -100,7 +100,7 @@ class Glare(WorldFault[Veil]):
     def _veiled(self, camera: int, lens: Lens, level: float) -> Lens:
         return replace(lens, veil=self.p.veil * level) if self.p.has(camera) else lens
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.frames > 0
 
 

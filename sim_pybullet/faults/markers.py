@@ -13,7 +13,7 @@ from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.seeing import Glint, Screen
 
 if TYPE_CHECKING:
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 MarkerIndex = Annotated[int, Field(ge=0, le=3)]
 BETWEEN_GLINTS_RAD = 2.4  # the golden angle: any number of them lies well apart
@@ -97,7 +97,7 @@ class LedOff(WorldFault[Markers]):
         for marker in self.p.chosen:
             sim.set_led(marker, alive=level == 0.0)
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return any(done.lit[m] for m in self.p.chosen)
 
 
@@ -108,7 +108,7 @@ class LedDim(WorldFault[Dimming]):
         for marker in self.p.chosen:
             sim.dim_led(marker, 1.0 - (1.0 - self.p.factor) * level)
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return any(done.lit[m] for m in self.p.chosen)
 
 
@@ -120,7 +120,7 @@ class LedStuckOn(WorldFault[Markers]):
         others = sim.world.seeing.always_lit & ~mask
         sim.see(always_lit=others | mask if level else others)
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return any(done.frames > done.lit[m] for m in self.p.chosen)
 
 
@@ -134,7 +134,7 @@ class LedSwapped(WorldFault[Pair]):
             lines[a], lines[b] = b, a
         sim.see(wiring=tuple(lines))
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return any(done.lit[m] for m in self.p.markers)
 
 
@@ -149,7 +149,7 @@ class FalseReflection(WorldFault[Reflections]):
         place = (self.p.away * math.cos(angle), self.p.away * math.sin(angle), GLINT_HEIGHT_M)
         return Glint((self.p.marker + number) % 4, place, self.p.strength)
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return any(done.lit[glint.led] for glint in sim.world.seeing.glints)
 
 
@@ -165,7 +165,7 @@ class MarkerOccluded(WorldFault[Hiding]):
         x, y, z = (p + self.p.away * d for p, d in zip(place, sim.towards_head(marker), strict=True))
         return Screen((x, y, z), self.p.size / 2)
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return any(done.lit[m] for m in self.p.chosen) and any(
             sim.hides(ball, self.p.chosen) for ball in sim.screens()
         )

@@ -13,7 +13,7 @@ from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
     from sim_pybullet.scene import Rock
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 UNLOADED = 0.85  # of the weight: with less than that on the tracks, the belly bears some
 RISING_M_S = 0.001
@@ -89,7 +89,7 @@ class _RockFault(WorldFault[R], Generic[R]):
         """How large it is on a map."""
         return rock.radius_m
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         if self.rock is None:
             return False
         seen, self._frames = self._frames, done.frames
@@ -150,7 +150,7 @@ class CabinGrounding(_RockFault[BellyStone]):
                 rise_m = RISING_M_S * sim.world.clock.tick_s
                 self.rock = sim.move_rock(self.rock, x, y, min(top_m, z + rise_m))
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return sum(sim.world.body.loads()) < UNLOADED * sim.world.weight_n
 
 
@@ -180,7 +180,7 @@ class WrongElevationModel(_RockFault[Rise]):
         """Radius of the sphere whose cap is as high and as wide as the rise."""
         return (self.p.radius**2 + self.p.height**2) / (2 * self.p.height)
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return self.rock is not None and sim.touches_rover(self.rock)
 
 

@@ -14,7 +14,7 @@ from sim_pybullet.faults.base import Parameters, WorldFault, spec
 from sim_pybullet.soil import Patch, Soil
 
 if TYPE_CHECKING:
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 DRIVEN_M = 0.002  # travel of both belts together; after so much of it, the ground has shown what it does
 
@@ -62,7 +62,7 @@ class SlipBurst(WorldFault[Slip]):
     def act(self, sim: WorldFaults, level: float) -> None:
         sim.world.extra_slip = self.p.slip * level
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.driven_m > DRIVEN_M
 
 
@@ -72,7 +72,7 @@ class SideSlopeDrift(WorldFault[Drift]):
     def act(self, sim: WorldFaults, level: float) -> None:
         sim.world.side_drift = self.p.drift * level
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.driven_m > DRIVEN_M
 
 
@@ -114,7 +114,7 @@ class _PatchFault(WorldFault[D], Generic[D]):
             inside = (x - u) ** 2 + (y - v) ** 2 < self.p.radius**2
             self._driven_inside_m += driven_m - before_m if inside else 0.0
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return self._driven_inside_m > DRIVEN_M
 
 

@@ -18,7 +18,7 @@ from sim_pybullet.faults.base import Nothing, Parameters, WorldFault, spec
 from sim_pybullet.lay import Bend
 
 if TYPE_CHECKING:
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 PULL_N = 0.15  # three times the drag of a free spool
 DRIVEN_M = 0.01
@@ -61,7 +61,7 @@ class Loop(Parameters):
 class _Pulling:
     """Shows once the tether pulls at the rover harder than a free spool lets it."""
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return sim.world.tether.tension_n > PULL_N
 
 
@@ -124,7 +124,7 @@ class TetherSlack(WorldFault[Loop]):
         tether.length_m = max(tether.length_m + more_m, tether.way_m(sim.world.anchor()))
         sim.world.wake()
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         tether = sim.world.tether
         loose = tether.length_m - tether.way_m(sim.world.anchor()) > self.p.loop / 2
         return loose and done.driven_m > DRIVEN_M

@@ -11,7 +11,7 @@ from sim_pybullet.faults.base import Parameters, WorldFault, spec
 
 if TYPE_CHECKING:
     from sim_pybullet.motor import Motor
-    from sim_pybullet.world_faults import Tally, WorldFaults
+    from sim_pybullet.world_faults import WorldActivity, WorldFaults
 
 ASTRAY_M = 0.0005  # turned otherwise than commanded by so much, a motor's fault has shown
 
@@ -51,7 +51,7 @@ class _MotorFault(WorldFault[S], Generic[S]):
     def alter(self, motor: Motor, level: float) -> None:
         raise TypeError(f"{type(self).__name__} alters nothing")
 
-    def shows(self, sim: WorldFaults, done: Tally) -> bool:
+    def shows(self, sim: WorldFaults, done: WorldActivity) -> bool:
         return done.astray_m[self.p.index] > ASTRAY_M
 
 

@@ -16,7 +16,7 @@ from proving.mutation.command import mutate as command_line
 from proving.mutation.equivalents import Equivalents, read_equivalents
 from proving.mutation.mutants import Forest, Mutant, changed, dumped
 from proving.mutation.mutate import MutationOptions, chosen, mutate
-from proving.mutation.operators import OPERATORS, Scene, defaults
+from proving.mutation.operators import OPERATORS, MutationSite, defaults
 from proving.mutation.sites import sites
 from proving.mutation.trial import Found
 
@@ -39,7 +39,7 @@ root:
 def changes(operator):
     """What an operator makes of the small tree: the words, and the data afterwards."""
     source, types = read_text(TREE, "small.yaml"), node_types()
-    scene = Scene(source, types, lambda word: {p.name: p for p in types[word].ports})
+    scene = MutationSite(source, types, lambda word: {p.name: p for p in types[word].ports})
     found = [c for site in sites(source, types) for c in OPERATORS[operator](scene, site)]
     return {change.what: changed(source, change)["root"]["sequence"] for change in found}
 
@@ -63,7 +63,7 @@ def test_each_child_is_dropped_in_turn():
 
 def test_leaves_are_inverted_and_a_sequence_becomes_a_selector():
     source, types = read_text(TREE, "small.yaml"), node_types()
-    scene = Scene(source, types, lambda word: {})
+    scene = MutationSite(source, types, lambda word: {})
     made = {c.what: c.value for s in sites(source, types) for c in OPERATORS["invert"](scene, s)}
     assert set(made) == {"selector for sequence", "invert take_picture", "invert localise", "invert pause"}
     assert list(made["selector for sequence"]) == ["selector"]

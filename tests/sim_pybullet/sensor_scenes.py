@@ -10,7 +10,7 @@ import numpy as np
 from executive.core.rig import RigCalibration
 from executive.core.types import Array, Window
 from sim_pybullet.picture import Picture
-from sim_pybullet.projection import View, about_y, about_z, head_views
+from sim_pybullet.projection import PlacedCamera, about_y, about_z, head_views
 from sim_pybullet.scene import Rock, SceneState
 from sim_pybullet.sensor import Sensor
 from sim_pybullet.sunlight import Sun
@@ -60,7 +60,7 @@ def scene_at(terrain: Terrain, x_m: float, y_m: float, heading_rad: float = 0.3,
     return scene_of_body(T, math.atan2(y_m, x_m), tilt, **joints)
 
 
-def held_up(view: View, u_px: float, v_px: float, depth_m: float, factor: float = 1.0) -> SceneState:
+def held_up(view: PlacedCamera, u_px: float, v_px: float, depth_m: float, factor: float = 1.0) -> SceneState:
     """Marker 0 at this pixel and depth of `view`, its plane facing the camera; the head looks level ahead."""
     marker = view.position_site_m + depth_m * view.rays(np.array(u_px), np.array(v_px))
     R_site_plc = np.column_stack([-view.R_site_cam[:, 1], view.R_site_cam[:, 0], -view.R_site_cam[:, 2]])
@@ -70,7 +70,7 @@ def held_up(view: View, u_px: float, v_px: float, depth_m: float, factor: float 
     return replace(scene, led_factor=(factor,) * 4)
 
 
-def level_view(camera: int = 0) -> View:
+def level_view(camera: int = 0) -> PlacedCamera:
     return head_views(RIG, 0.0, 0.0)[camera]
 
 

@@ -18,7 +18,7 @@ from executive.record.events import NodeChange
 from executive.tree.catalogue import node_types
 from executive.tree.load import load_tree
 from proving.coverage.universe import Universe
-from proving.mutation.operators import OPERATORS, Scene
+from proving.mutation.operators import OPERATORS, MutationSite
 from proving.mutation.sites import sites
 
 MAJORITY = '''
@@ -163,7 +163,7 @@ def test_coverage_goes_by_its_abilities(project):
 
 def test_mutation_changes_it_like_any_other(project):
     source, types = read(Path("vote.yaml"), "vote.yaml"), node_types()
-    scene = Scene(source, types, lambda word: {port.name: port for port in types[word].ports})
+    scene = MutationSite(source, types, lambda word: {port.name: port for port in types[word].ports})
     (site,) = (site for site in sites(source, types) if site.word == "majority")
     made = [change.what for operator in OPERATORS.values() for change in operator(scene, site)]
     assert made == [

@@ -147,8 +147,8 @@ def _port(
 ) -> tuple[str | None, Direction | None]:
     """Type and direction of a node's port; None for what nobody declares."""
     if kind in trees:
-        told = trees[kind].get(port, {})
-        return told.get("type"), Direction(told["direction"]) if "direction" in told else None
+        declared = trees[kind].get(port, {})
+        return declared.get("type"), Direction(declared["direction"]) if "direction" in declared else None
     specs: tuple[PortSpec, ...] = types[kind].ports if kind in types else ()
     spec = next((s for s in specs if s.name == port), None)
     return (spec.type.name, spec.direction) if spec else (None, None)

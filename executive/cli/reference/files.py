@@ -22,9 +22,9 @@ def file_pages() -> dict[str, str]:
 
 def _page(kind: str) -> str:
     made = schema(kind)
-    told = examples("files").get(kind, {})
-    about = told.get("about") or made.get("description") or f"Files with the key `{kind}`."
-    example = told.get("example", "")
+    entry = examples("files").get(kind, {})
+    about = entry.get("about") or made.get("description") or f"Files with the key `{kind}`."
+    example = entry.get("example", "")
     lines = [f"# {kind.capitalize()} files\n", f"{about}\n"]
     lines += [f"```yaml\n{example}```\n"] if example else []
     lines += ["## Keys\n", *tables(made)]

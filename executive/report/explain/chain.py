@@ -10,7 +10,7 @@ from executive.record.history import At
 
 
 @dataclass(frozen=True)
-class Link:
+class ChainLink:
     """One node at a moment. `reason` and `detail` say why a leaf ended, empty otherwise."""
 
     path: str
@@ -24,7 +24,7 @@ class Link:
         return self.path.rsplit("/", 1)[-1]
 
 
-Chain = tuple[Link, ...]
+Chain = tuple[ChainLink, ...]
 """Leaf first, root last; empty where nothing was ticked."""
 
 
@@ -72,6 +72,6 @@ def parents(path: str) -> list[str]:
     return ["/".join(parts[:n]) for n in range(1, len(parts))]
 
 
-def _link(at: At[NodeChange]) -> Link:
+def _link(at: At[NodeChange]) -> ChainLink:
     event = at.event
-    return Link(event.path, event.status, at.time_s, event.reason, event.detail)
+    return ChainLink(event.path, event.status, at.time_s, event.reason, event.detail)

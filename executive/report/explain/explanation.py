@@ -24,7 +24,7 @@ from executive.record.events import (
 from executive.record.history import At
 from executive.record.result import strategy_rows
 from executive.record.run_result import FaultStages, StrategyRow
-from executive.report.explain.chain import Chain, Link, Moment
+from executive.report.explain.chain import Chain, ChainLink, Moment
 from executive.report.explain.sentence import POOL, sentence
 
 T = TypeVar("T")
@@ -163,7 +163,7 @@ def _fault(fault: FaultStages) -> dict[str, object]:
     return {key: getattr(fault, key) for key in ("name", "t_on_s", "t_off_s", "expected")}
 
 
-def _link(link: Link) -> dict[str, object]:
+def _link(link: ChainLink) -> dict[str, object]:
     return {
         "name": link.name,
         "path": link.path,

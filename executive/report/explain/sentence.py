@@ -20,7 +20,7 @@ from executive.record.events import (
 from executive.record.evidence import NOMINAL, leading
 from executive.record.history import At
 from executive.record.result import strategy_rows
-from executive.report.explain.chain import Link, Moment
+from executive.report.explain.chain import ChainLink, Moment
 from executive.report.figure import counted, duration
 
 T = TypeVar("T")
@@ -62,7 +62,7 @@ def _came_up(history: History, end_s: float) -> Iterator[str]:
         yield f"{first.name} failed at {duration(first.since_s)}{f' ({said})' if said else ''}{more}"
 
 
-def _failures(history: History, end_s: float) -> list[Link]:
+def _failures(history: History, end_s: float) -> list[ChainLink]:
     """The leaf behind each question to the pool, and behind an end that was not good; each failure once."""
     changes = history.all(NodeChange)
     chosen = _until(history.all(StrategyEvent), end_s)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from executive.record.events import Command
 from executive.record.run_result import FaultStages
-from executive.report.explain.chain import Chain, Link
+from executive.report.explain.chain import Chain, ChainLink
 from executive.report.explain.explanation import Explanation
 from executive.report.figure import duration
 
@@ -70,7 +70,7 @@ def _chain(chain: Chain) -> list[str]:
     return [f"  {_node(link, width)}" for link in chain]
 
 
-def _node(link: Link, width: int) -> str:
+def _node(link: ChainLink, width: int) -> str:
     why = ": ".join(word for word in (link.reason, link.detail) if word)
     said = f"{MARKS.get(link.status, '?')} {link.name:{width}}  {link.status:8} since {_t(link.since_s)}"
     return f"{said}  {why}".rstrip()

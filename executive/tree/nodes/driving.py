@@ -92,8 +92,8 @@ class DrivingLeaf(ActionLeaf):
             return Outcome(Reason.OFF_TRACK, f"may be {-room_m * 1e3:.0f} mm beyond the margin")
         doubt = self.services.classification.tracker.doubt
         if (room_m := doubt.room_m(segment, self.sigmas)) <= 0.0:
-            told = f"may be {-room_m * 1e3:.0f} mm beyond the margin if the last fixes are false"
-            return Outcome(Reason.OFF_TRACK, told)
+            message = f"may be {-room_m * 1e3:.0f} mm beyond the margin if the last fixes are false"
+            return Outcome(Reason.OFF_TRACK, message)
         exceeded = doubt.exceeded(segment)
         return None if exceeded is None else Outcome(Reason.OFF_TRACK, exceeded)
 

@@ -46,8 +46,8 @@ class Leaf(Declared, Behaviour):
     @classmethod
     def takes_time(cls) -> bool:
         """Whether a step may leave the leaf under way, as the type of what it returns says."""
-        told = get_type_hints(cls.step).get("return")
-        return told is None or NoneType in get_args(told)
+        returned = get_type_hints(cls.step).get("return")
+        return returned is None or NoneType in get_args(returned)
 
     def begin(self) -> None:
         """Called when the leaf is entered, before its first step."""

@@ -59,8 +59,8 @@ class MeasureArrival(Localise):
             return None
         if self._away_m(self.pose) <= radius_m(self.pose, self.within):
             return measured
-        told = f"two sigma {2e3 * self.pose.sigma_position_m:.0f} mm after {self._looks} looks"
-        return Outcome(Reason.ARRIVAL_UNCERTAIN, f"{told}, tolerance {self.within * 1e3:.0f} mm")
+        message = f"two sigma {2e3 * self.pose.sigma_position_m:.0f} mm after {self._looks} looks"
+        return Outcome(Reason.ARRIVAL_UNCERTAIN, f"{message}, tolerance {self.within * 1e3:.0f} mm")
 
     def _away_m(self, pose: PoseEstimate) -> float:
         return guidance.distance_m(pose, self.target)

@@ -17,7 +17,7 @@ from executive.core.types import Array
 from perception.geometry.body import Transform
 from perception.geometry.rotation import exp_map
 from perception.outline.passive.drawing import Stands
-from perception.outline.passive.matching import Match, Scene, match
+from perception.outline.passive.matching import CameraScene, Match, match
 
 SIZE = 6
 _STEP_PX = 0.1
@@ -89,7 +89,7 @@ class Aligned:
 
 
 def align(
-    scenes: Sequence[Scene],
+    scenes: Sequence[CameraScene],
     start: Start,
     parameters: Array,
     sigmas: Sequence[Array],

@@ -33,7 +33,7 @@ from perception.outline.passive.judging import (
     Sun,
     judged,
 )
-from perception.outline.passive.matching import Scene
+from perception.outline.passive.matching import CameraScene
 from perception.outline.passive.solids import rover_solids
 from perception.outline.passive.ways import (
     RIVAL,
@@ -102,14 +102,14 @@ def _checked(name: str, frames: Frames, window: Window) -> Frames:
 
 def _scene(
     chain: Chain, expectation: Expectation, camera: int, window: Window, image: Array, empty: Array
-) -> Scene:
+) -> CameraScene:
     """One camera's frames (n, h, w) as a mean over its background."""
     state = expectation.state
     noise = chain.rig.sensor.noise_counts / math.sqrt(len(image))
     under = lay_under(image.mean(axis=0), empty.mean(axis=0), noise)
     artist = Artist(chain, rover_solids(chain.rig, state.joints_rad), state.head_rad, camera, window)
     range_m = float(np.linalg.norm(state.site_body.position_m))
-    return Scene(image.mean(axis=0), noise, under, artist, chain.rig.cameras[0].focal_px / range_m)
+    return CameraScene(image.mean(axis=0), noise, under, artist, chain.rig.cameras[0].focal_px / range_m)
 
 
 def _start(chain: Chain, expectation: Expectation, ground: Ground) -> Start:

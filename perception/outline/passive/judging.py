@@ -15,7 +15,7 @@ from perception.geometry.chain import Chain
 from perception.geometry.pose import chi2_limit
 from perception.geometry.rotation import skew
 from perception.outline.passive.alignment import Aligned
-from perception.outline.passive.matching import Detail, Scene
+from perception.outline.passive.matching import CameraScene, Detail
 
 _GATE = 0.999
 _LEAST_EXPLAINED = 0.5  # of what changed against the background
@@ -62,7 +62,7 @@ class PassiveRefusal:
 
 
 def judged(
-    chain: Chain, best: Aligned, scenes: Sequence[Scene], details: Sequence[Detail], ground: Ground
+    chain: Chain, best: Aligned, scenes: Sequence[CameraScene], details: Sequence[Detail], ground: Ground
 ) -> PassiveFix | PassiveRefusal:
     """The best pose as a fix, or what speaks against it."""
     if not best.converged:
@@ -91,7 +91,7 @@ def judged(
     return PassiveFix(body, covariance, explained, sun, note)
 
 
-def _explained(best: Aligned, scenes: Sequence[Scene]) -> float:
+def _explained(best: Aligned, scenes: Sequence[CameraScene]) -> float:
     """Share of the change against the background that rover and shadow account for."""
     changed = ordered_sum(float(((s.image - s.background.counts) ** 2).sum()) for s in scenes)
     left = ordered_sum(float((m.residual[0] ** 2).sum()) for m in best.matches)

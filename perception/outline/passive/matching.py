@@ -25,7 +25,7 @@ _UNEVEN_M = 0.015  # of the ground about the plane that the shadow is drawn on
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class CameraScene:
     """One camera's part: mean image (h, w) [counts], its noise, the background, who draws the rover; and how
     large a metre is where it is expected."""
 
@@ -59,13 +59,13 @@ class Match:
     drawing: Drawing
 
 
-def first_detail(scene: Scene) -> Detail:
+def first_detail(scene: CameraScene) -> Detail:
     """What to allow for before anything is known."""
     rover, shadow = _DETAIL * scene.brightness, _SHADOW_DETAIL * scene.brightness
     return Detail(rover, shadow, rover)
 
 
-def weigh(scene: Scene, stands: Stands, detail: Detail) -> Array:
+def weigh(scene: CameraScene, stands: Stands, detail: Detail) -> Array:
     """How far each pixel (h, w) may be off what is drawn [counts], with the rover at the first pose."""
     drawing = scene.artist.draw(stands)
     rover = drawing.shades[0].sum(axis=0)
@@ -75,7 +75,7 @@ def weigh(scene: Scene, stands: Stands, detail: Detail) -> Array:
     return sigma
 
 
-def match(scene: Scene, stands: Stands, sigma: Array) -> Match:
+def match(scene: CameraScene, stands: Stands, sigma: Array) -> Match:
     """Explain the image by each of the poses, pixels weighed by their `sigma` (h, w)."""
     drawing = scene.artist.draw(stands)
     background = scene.background.counts.astype(np.float32)
@@ -93,7 +93,7 @@ def match(scene: Scene, stands: Stands, sigma: Array) -> Match:
     return Match(rest.reshape(n, *sigma.shape).astype(np.float64) * sigma, drawing)
 
 
-def _knowledge(scene: Scene, drawing: Drawing) -> Array:
+def _knowledge(scene: CameraScene, drawing: Drawing) -> Array:
     """Weights (n, s + 1) of what is expected of shades and shadow; a shade that hardly shows has no say."""
     shown = np.minimum(drawing.shades.sum(axis=(2, 3)) / _SHADE_PX + _HARDLY, 1.0)
     sigma = np.pad(_SHADE_SIGMA * scene.brightness * shown, ((0, 0), (0, 1)), constant_values=_SHADOW_SIGMA)
@@ -101,7 +101,7 @@ def _knowledge(scene: Scene, drawing: Drawing) -> Array:
     return weight
 
 
-def refined_detail(scene: Scene, found: Match) -> Detail:
+def refined_detail(scene: CameraScene, found: Match) -> Detail:
     """What the drawing was seen to leave out at the first pose."""
     least = _LEAST_DETAIL * scene.brightness
     rover = found.drawing.shades[0].sum(axis=0)
@@ -111,7 +111,7 @@ def refined_detail(scene: Scene, found: Match) -> Detail:
     )
 
 
-def _about_shadow(scene: Scene, drawing: Drawing) -> Array:
+def _about_shadow(scene: CameraScene, drawing: Drawing) -> Array:
     """Share of shadow in or near each pixel: ground is no plane, and a shadow's edge lies where it lies."""
     reach = round(_UNEVEN_M * scene.pixels_a_metre)
     size = (2 * reach + 1, 2 * reach + 1)

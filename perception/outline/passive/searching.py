@@ -11,7 +11,7 @@ import numpy as np
 from executive.core.types import Array
 from perception.outline.passive.alignment import SIZE, Start
 from perception.outline.passive.coverage import Layers
-from perception.outline.passive.matching import Scene
+from perception.outline.passive.matching import CameraScene
 from perception.outline.passive.solids import Indices
 
 _CHANGED = 3.0  # sigmas from which a pixel speaks for the rover rather than for the ground
@@ -32,7 +32,7 @@ class Guess:
     score: float
 
 
-def search(scenes: Sequence[Scene], start: Start, focal_px: float, suns_rad: Array) -> list[Guess]:
+def search(scenes: Sequence[CameraScene], start: Start, focal_px: float, suns_rad: Array) -> list[Guess]:
     """A start for each heading, with the best of the suns (n, 2), azimuth and elevation; best first."""
     turned = np.zeros((len(_HEADINGS_RAD), SIZE))
     turned[:, 5] = _HEADINGS_RAD
@@ -51,7 +51,7 @@ def search(scenes: Sequence[Scene], start: Start, focal_px: float, suns_rad: Arr
     return list(best_of.values())
 
 
-def likeliest_sun(scenes: Sequence[Scene], start: Start, parameters: Array) -> Array:
+def likeliest_sun(scenes: Sequence[CameraScene], start: Start, parameters: Array) -> Array:
     """The sun (2,) near that of the start whose shadow of the rover at this pose covers what has changed."""
     sun_rad = start.sun_rad
     for step in _SUN_STEPS_RAD:
@@ -74,7 +74,7 @@ def _places(start: Start, focal_px: float) -> Array:
     return grid
 
 
-def _scores(scene: Scene, start: Start, turned: Array, grid: Array) -> Array:
+def _scores(scene: CameraScene, start: Start, turned: Array, grid: Array) -> Array:
     """What one camera says for each heading (n, 6) at each place (m, 6): (n, m)."""
     artist = scene.artist.framing(start.stands(turned), _MARGIN_PX)
     outlines = artist.draw(start.stands(turned))
@@ -85,7 +85,7 @@ def _scores(scene: Scene, start: Start, turned: Array, grid: Array) -> Array:
     return _overlaps(_evidence(scene), 1 - outlines.ground + outlines.shadow, moves + corner)
 
 
-def _evidence(scene: Scene) -> Array:
+def _evidence(scene: CameraScene) -> Array:
     """What each pixel says for the rover (positive) or for the ground."""
     off = np.abs(scene.image - scene.background.counts) / np.hypot(scene.background.sigma, scene.noise)
     evidence: Array = np.minimum(off, _MOST) - _CHANGED

@@ -17,8 +17,8 @@ from executive.core.types import Array
 from perception.outline.passive.alignment import Aligned, Start, align
 from perception.outline.passive.drawing import Stands
 from perception.outline.passive.matching import (
+    CameraScene,
     Detail,
-    Scene,
     first_detail,
     refined_detail,
     weigh,
@@ -38,7 +38,7 @@ class Way:
     """How far one start has led: pose, scenes cut to it, and how their pixels are weighed."""
 
     aligned: Aligned
-    scenes: Sequence[Scene]
+    scenes: Sequence[CameraScene]
     details: Sequence[Detail]
     sigmas: Sequence[Array]
 
@@ -48,7 +48,7 @@ class Way:
         return align(other.scenes, mine.start, mine.parameters, other.sigmas, focal_px, 0).cost
 
 
-def approached(scenes: Sequence[Scene], start: Start, focal_px: float, suns_rad: Array) -> list[Way]:
+def approached(scenes: Sequence[CameraScene], start: Start, focal_px: float, suns_rad: Array) -> list[Way]:
     """The best two of the headings, some steps on."""
     ways = []
     for guess in search(scenes, start, focal_px, suns_rad):
@@ -99,13 +99,13 @@ def _apart(one: Aligned, other: Aligned) -> bool:
 
 
 def _sigmas(
-    scenes: Sequence[Scene], start: Start, parameters: Array, details: Sequence[Detail]
+    scenes: Sequence[CameraScene], start: Start, parameters: Array, details: Sequence[Detail]
 ) -> list[Array]:
     stands = start.stands(parameters[None])
     return [weigh(s, stands, d) for s, d in zip(scenes, details, strict=True)]
 
 
-def _cropped(scene: Scene, stands: Stands) -> Scene:
+def _cropped(scene: CameraScene, stands: Stands) -> CameraScene:
     """The scene cut to the rover and its shadow at this pose."""
     artist = scene.artist.framing(stands, _FINE_MARGIN_PX)
     top, left = artist.window.v - scene.artist.window.v, artist.window.u - scene.artist.window.u

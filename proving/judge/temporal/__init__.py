@@ -9,14 +9,14 @@ from proving.judge.temporal.formula import (
 )
 from proving.judge.temporal.judgement import Judgement, judge
 from proving.judge.temporal.parse import parse_formula
-from proving.judge.temporal.trace import Trace, on_one_grid, recorded
+from proving.judge.temporal.trace import SignalTrace, on_one_grid, recorded
 
 __all__ = [
     "Always",
     "Eventually",
     "Formula",
     "Judgement",
-    "Trace",
+    "SignalTrace",
     "Until",
     "judge",
     "names",

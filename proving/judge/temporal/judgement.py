@@ -9,7 +9,7 @@ import numpy as np
 
 from proving.judge.temporal.formula import Formula, atoms, names
 from proving.judge.temporal.semantics import Decisions, Margins, evaluate
-from proving.judge.temporal.trace import Trace
+from proving.judge.temporal.trace import SignalTrace
 from proving.judge.temporal.vacuity import warnings
 
 
@@ -28,7 +28,7 @@ class Judgement:
     warning: str | None = None
 
 
-def judge(formula: Formula, trace: Trace) -> Judgement:
+def judge(formula: Formula, trace: SignalTrace) -> Judgement:
     """The judgement over a whole run. A formula of which nothing is known is not met, with a warning."""
     silent = [name for name in names(formula) if name in trace.silent]
     if silent:
@@ -49,7 +49,7 @@ def judge(formula: Formula, trace: Trace) -> Judgement:
     )
 
 
-def _unknown(formula: Formula, trace: Trace) -> str:
+def _unknown(formula: Formula, trace: SignalTrace) -> str:
     late = [name for name in names(formula) if np.isnan(trace.values[name][0])]
     if late:
         return (
@@ -58,7 +58,7 @@ def _unknown(formula: Formula, trace: Trace) -> str:
     return "unknown: its arithmetic has no result"
 
 
-def _unit(formula: Formula, trace: Trace, margin: float) -> str | None:
+def _unit(formula: Formula, trace: SignalTrace, margin: float) -> str | None:
     """That of the atom which decided: minima and maxima choose, they never mix."""
     for atom in atoms(formula):
         if abs(margin) in np.abs(atom.margins(trace.values, trace.count)):

@@ -30,7 +30,7 @@ from proving.judge.temporal.formula import (
     Or,
     Until,
 )
-from proving.judge.temporal.trace import Trace
+from proving.judge.temporal.trace import SignalTrace
 from proving.judge.temporal.windows import least
 
 
@@ -46,7 +46,7 @@ class Scale(Protocol):
 class Margins:
     """Robustness: by how much, in the atoms' own units."""
 
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: SignalTrace) -> None:
         self._trace = trace
 
     def of(self, atom: Atom) -> Array:
@@ -59,7 +59,7 @@ class Margins:
 class Decisions:
     """Yes (positive) or no (negative), the larger the earlier: the time left to the end, plus one [ns]."""
 
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: SignalTrace) -> None:
         self._trace = trace
         self._left = (trace.end_ns + 1 - trace.times_ns).astype(np.float64)
 
@@ -76,7 +76,7 @@ class Decisions:
         return float((self._trace.end_ns + 1 - abs(decision)) / 1e9)
 
 
-def evaluate(formula: Formula, trace: Trace, scale: Scale) -> Array:
+def evaluate(formula: Formula, trace: SignalTrace, scale: Scale) -> Array:
     """The formula's value at each sample, as if the mission began there; shape (n,)."""
     match formula:
         case Atom():
@@ -98,11 +98,11 @@ def evaluate(formula: Formula, trace: Trace, scale: Scale) -> Array:
             return _until(*values, bounds, trace, scale)
 
 
-def _always(values: Array, bounds: Bounds, trace: Trace, scale: Scale) -> Array:
+def _always(values: Array, bounds: Bounds, trace: SignalTrace, scale: Scale) -> Array:
     return scale.seen_out(least(values, *trace.window(bounds)), bounds)
 
 
-def _until(left: Array, right: Array, bounds: Bounds, trace: Trace, scale: Scale) -> Array:
+def _until(left: Array, right: Array, bounds: Bounds, trace: SignalTrace, scale: Scale) -> Array:
     """In O(n log w), by taking it apart (Donzé, Ferrère and Maler 2013, lemma 7).
 
     A until[a, b] B  =  eventually[a, b] B, and A before a, and from a on (A until B) without bounds

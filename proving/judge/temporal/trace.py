@@ -25,7 +25,7 @@ Samples = tuple[Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class SignalTrace:
     """`times_ns` (n,), ascending; `values` by name, each (n,). `silent`: the signals without any sample."""
 
     times_ns: NDArray[np.int64]
@@ -53,16 +53,18 @@ class Trace:
         return first, np.searchsorted(self.times_ns, self.times_ns + bounds.last_ns, side="right") - 1
 
 
-def on_one_grid(samples: Mapping[str, Samples], end_s: float) -> Trace:
+def on_one_grid(samples: Mapping[str, Samples], end_s: float) -> SignalTrace:
     """The trace of these signals from mission time 0 to `end_s`, or to the last sample if that is later."""
     sampled = {name: _latest(times_s, values) for name, (times_s, values) in samples.items()}
     ends = np.array([0, round(end_s * 1e9)], dtype=np.int64)
     grid = np.unique(np.concatenate([ends, *(times_ns for times_ns, _ in sampled.values())]))
     values = {name: _held(grid, *sample) for name, sample in sampled.items()}
-    return Trace(grid, values, tuple(name for name, (times_ns, _) in sampled.items() if not len(times_ns)))
+    return SignalTrace(
+        grid, values, tuple(name for name, (times_ns, _) in sampled.items() if not len(times_ns))
+    )
 
 
-def recorded(names: Iterable[str], history: History, world: History) -> Trace:
+def recorded(names: Iterable[str], history: History, world: History) -> SignalTrace:
     """The named signals of a run: from its record, and from the simulator's own for those of the truth."""
     samples = {name: _samples(name, world if signals()[name].truth else history) for name in names}
     return on_one_grid(samples, history.end_s)

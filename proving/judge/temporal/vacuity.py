@@ -20,19 +20,19 @@ from proving.judge.temporal.formula import (
     parts,
 )
 from proving.judge.temporal.semantics import Decisions, evaluate
-from proving.judge.temporal.trace import Trace
+from proving.judge.temporal.trace import SignalTrace
 from proving.judge.temporal.windows import covered
 
 Mask = NDArray[np.bool_]
 
 
-def warnings(formula: Formula, trace: Trace) -> list[str]:
+def warnings(formula: Formula, trace: SignalTrace) -> list[str]:
     """A sentence for each part that said nothing of this run."""
     start = np.arange(trace.count) == 0
     return list(dict.fromkeys(_idle(formula, start, trace)))
 
 
-def _idle(formula: Formula, asked: Mask, trace: Trace) -> Iterator[str]:
+def _idle(formula: Formula, asked: Mask, trace: SignalTrace) -> Iterator[str]:
     if not asked.any():
         return  # whatever stands around it has said so
     match formula:
@@ -61,6 +61,6 @@ def _idle(formula: Formula, asked: Mask, trace: Trace) -> Iterator[str]:
                 yield from _idle(part, asked, trace)
 
 
-def _holds(formula: Formula, trace: Trace) -> Mask:
+def _holds(formula: Formula, trace: SignalTrace) -> Mask:
     """Where it is known to hold."""
     return evaluate(formula, trace, Decisions(trace)) > 0

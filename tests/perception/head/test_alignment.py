@@ -108,6 +108,6 @@ def test_a_turn_of_the_head_moves_a_fix_by_its_arm():
 
 def test_two_looks_say_more_than_one():
     one = Alignment(np.full(8, 0.01), 1e-4 * np.eye(8))
-    two = one.joined(Alignment(np.full(8, 0.03), 1e-4 * np.eye(8)))
+    two = one.fuse(Alignment(np.full(8, 0.03), 1e-4 * np.eye(8)))
     np.testing.assert_allclose(two.mean, 0.02)
     np.testing.assert_allclose(two.covariance, 0.5e-4 * np.eye(8), atol=1e-12)

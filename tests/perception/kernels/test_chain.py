@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 from executive.core.rig import RigCalibration
 from perception.geometry.chain import Chain
 from perception.geometry.pose import (
+    PoseReadings,
     Prior,
-    Readings,
     Sighting,
     estimate,
     linear_guess,
@@ -22,7 +22,7 @@ from perception.geometry.rotation import (
     quat_from_matrix,
 )
 from perception.kernels.compiled import plain
-from perception.kernels.gauss_newton import Problem, normal_equations, weights_of
+from perception.kernels.gauss_newton import PoseProblem, normal_equations, weights_of
 from perception.kernels.linear import inverted
 from tests.perception.geometry.test_geometry import BENT_RIG, TURNED_RIG
 from tests.perception.synthetic import scene
@@ -100,9 +100,9 @@ def test_pixels_are_those_of_a_pinhole_written_out(rig):
 def test_normal_equations_are_those_of_the_residuals_written_out(rig):
     true, seen, prior = seen_by(rig, np.random.default_rng(7))
     chain, state = true.chain, true.state
-    readings = Readings.of(chain, seen, prior)
+    readings = PoseReadings.of(chain, seen, prior)
     weights, count = weights_of(plain(seen.uv_px), plain(seen.covariance_px2))
-    problem = Problem(*chain.kernel_rig, readings.measured, plain(seen.uv_px), weights)
+    problem = PoseProblem(*chain.kernel_rig, readings.measured, plain(seen.uv_px), weights)
     body = state.site_body
     H, g, chi2 = normal_equations(problem, plain(body.rotation), plain(body.position_m), state.angles_rad)
     off = residuals(chain, seen, prior, vector_of(state))

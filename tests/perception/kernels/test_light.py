@@ -6,7 +6,7 @@ import pytest
 from perception.frames.psf import Spread
 from perception.kernels.frames import equalised, mean_and_range
 from perception.kernels.lattice import add_pattern, best_shifts
-from perception.kernels.light import joined, local_fits
+from perception.kernels.light import local_fits, normal_equations_with_light
 from tests.perception.synthetic import spot
 
 SPREAD = Spread(0.8, 0.6)
@@ -82,7 +82,7 @@ def test_local_fits_join_to_one_over_state_and_fluxes():
     information = root @ np.swapaxes(root, -1, -2)
     G = np.zeros((2, 4, 3, 12))
     G[..., 0, 10:], G[..., 1:, :10] = gain, J
-    H, g = joined(J, gain, information, score)
+    H, g = normal_equations_with_light(J, gain, information, score)
     np.testing.assert_allclose(H, np.einsum("cmas,cmab,cmbt->st", G, information, G), rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(g, np.einsum("cmas,cma->s", G, score), rtol=1e-12, atol=1e-12)
 

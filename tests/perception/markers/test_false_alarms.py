@@ -12,7 +12,7 @@ from perception.frames.difference import Difference
 from perception.frames.exposure import plate_view
 from perception.frames.psf import marker_spread
 from perception.geometry.chain import STATE_SIZE
-from perception.geometry.pose import Readings, Sighting
+from perception.geometry.pose import PoseReadings, Sighting
 from perception.kernels.climb import point_at
 from perception.markers.false_alarms import joint_threshold, log_distinct_poses, unit_information
 from perception.markers.likelihood import (
@@ -37,7 +37,7 @@ def setting():
 def readings(setting):
     said = setting.said
     sighting = Sighting(*NOTHING_SEEN, said.head_rad, said.joints_rad, setting.tilt_rad)
-    return Readings.of(setting.true.chain, sighting, setting.expectation.surface)
+    return PoseReadings.of(setting.true.chain, sighting, setting.expectation.surface)
 
 
 @pytest.fixture(scope="module")

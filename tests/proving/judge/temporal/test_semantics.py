@@ -6,14 +6,14 @@ from executive.core.clock import Stopwatch
 from executive.core.values import FLAG, LENGTH, NUMBER
 from proving.judge.temporal import judge, on_one_grid, parse_formula
 from proving.judge.temporal.semantics import Decisions, Margins, evaluate
-from proving.judge.temporal.trace import Trace
+from proving.judge.temporal.trace import SignalTrace
 from tests.proving.judge.temporal.direct import value
 from tests.proving.judge.temporal.random_formulas import TYPES, formula
 
 KINDS = {"x": NUMBER, "y": NUMBER, "far": LENGTH, "moving": FLAG}
 
 
-def traced(**samples) -> Trace:
+def traced(**samples) -> SignalTrace:
     """Each signal as {time [s]: value}."""
     pairs = {name: (np.array(list(told)), np.array(list(told.values()))) for name, told in samples.items()}
     return on_one_grid(pairs, max((max(told) for told in samples.values() if told), default=0.0))
@@ -23,7 +23,7 @@ def judged(text, **samples):
     return judge(parse_formula(text, KINDS), traced(**samples))
 
 
-def irregular(rng) -> Trace:
+def irregular(rng) -> SignalTrace:
     """Two signals sampled at their own uneven times, neither from the start."""
 
     def sampled():
