@@ -3,8 +3,9 @@
     python -m benchmarks.digests              # compares with benchmarks/digests.json; exit 1 if one differs
     python -m benchmarks.digests --update     # writes what is found there, for a commit that says why
 
-One architecture and the locked versions give these digests; elsewhere last bits may differ. From Python 3.12
-on PyBullet is another package, which the record's start names: digests of their own. Some 3 minutes.
+The locked versions give these digests on every x86-64 processor with AVX2 (docs/decisions/0049); elsewhere
+last bits may differ. From Python 3.12 on PyBullet is another package, which the record's start names: digests
+of their own. Some 3 minutes.
 """
 
 from __future__ import annotations
