@@ -51,7 +51,7 @@ def replay(run_dir: Path, out: Path | None, as_json: bool) -> int:
 def compare(folder: Path, out: Path | None, limits: Limits) -> Comparison:
     """Run `folder`'s scenario again, into `out` if it is to be kept. RecordError if there is no record."""
     from executive.core.errors import RecordError
-    from executive.record import digest, first_divergence
+    from executive.record import cut_ticks, digest, first_divergence
     from proving.engine import Case, CaseClass, run_cases, settle
 
     scenario, record = folder / "scenario.yaml", folder / "record.mcap"
@@ -59,7 +59,8 @@ def compare(folder: Path, out: Path | None, limits: Limits) -> Comparison:
         raise RecordError(f"{folder}: got no scenario.yaml and record.mcap, expected a run folder")
     with TemporaryDirectory(prefix="longarm-") as temporary:
         into = out.absolute() if out else Path(temporary)
-        (ending,) = run_cases([Case("again", scenario.absolute(), into, limits=limits)], 1)
+        case = Case("again", scenario.absolute(), into, limits=limits, cut_ticks=cut_ticks(record))
+        (ending,) = run_cases([case], 1)
         settle(ending)
         if ending.kind is CaseClass.INFRASTRUCTURE:
             return Comparison(digest(record), "", None, f"{ending.cause}: {ending.detail}")

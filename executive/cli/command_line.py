@@ -96,7 +96,9 @@ FILE = click.Path(path_type=Path)
 
 
 @cli.command()
-@click.argument("file", type=FILE)
+@click.argument("file", type=FILE, required=False)
+@click.option("--resume", "run_dir", type=FILE, metavar="RUN_DIR", help="Go on with a run that was killed.")
+@click.option("--as-begun", is_flag=True, help="With --resume: the files as the run folder keeps them.")
 @click.option("--seed", type=int, help="Replace the scenario's seed.")
 @click.option("--out", type=FILE, help="Where to write the run folder.")
 @click.option("--tier", help="Replace the scenario's tier: one that its backend has.")
@@ -107,7 +109,9 @@ FILE = click.Path(path_type=Path)
 @click.option("--json", "as_json", is_flag=True, help="Print result.json and nothing else.")
 @click.option("--quiet", is_flag=True, help="Print nothing.")
 def run(
-    file: Path,
+    file: Path | None,
+    run_dir: Path | None,
+    as_begun: bool,
     seed: int | None,
     out: Path | None,
     tier: str | None,
@@ -120,25 +124,17 @@ def run(
 
     Example: longarm run missions/first_traverse.yaml --seed 3 --set "world.light.sun_elevation=20 deg"
     """
-    from executive.cli import summary
-    from executive.config.find import located
-    from executive.run import app
-    from executive.run.instruments import broken_instruments
-    from executive.tree.strategies import broken_strategies
+    from executive.cli import running
 
-    for broken in () if quiet else (*broken_strategies(), *broken_instruments()):
-        click.echo(f"longarm: the run does without {broken}", err=True)
-    file = located(file, "scenarios", "missions")
-    options = app.RunOptions(seed, out, tier, overrides, bar=not (quiet or as_json), force=force, alone=True)
-    finished = app.run(file, options)
-    if as_json:
-        click.echo(json.dumps(finished.result.to_json(), indent=2))
-    elif not quiet:
-        summary.show(finished)
-    if finished.exit_code == DEFECT:
-        where = finished.folder / "traceback.txt"
-        click.echo(f"longarm: a defect: {finished.result.reason} ({where})", err=True)
-    return finished.exit_code
+    shown = running.Shown(as_json, quiet)
+    if run_dir is not None and file is None:
+        given = {"--seed": seed, "--out": out, "--tier": tier, "--set": overrides, "--force": force}
+        return running.go_on(run_dir, as_begun, [name for name, value in given.items() if value], shown)
+    if file is None:
+        raise click.UsageError("got no FILE, expected a scenario or a mission, or --resume RUN_DIR")
+    if run_dir is not None or as_begun:
+        raise click.UsageError("got FILE and --resume, expected the one or the other")
+    return running.begin(file, seed, out, tier, overrides, force, shown)
 
 
 @cli.command("verify-record")

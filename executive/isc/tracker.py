@@ -20,7 +20,10 @@ LEAST_BLOCKED_TURN_RAD = math.radians(5.0)  # what holds one track turns the rov
 
 
 class Tracker:
-    """The predicted pose and soil, the last readings, and what was predicted since the last fix."""
+    """The predicted pose and soil, the last readings, and what was predicted since the last fix.
+
+    `fixes` counts those taken in.
+    """
 
     def __init__(self, prior: PoseEstimate, rig: Rig, clock: Clock, noise: MotionNoise) -> None:
         self.motion: MotionState = start(prior, noise)
@@ -31,6 +34,7 @@ class Tracker:
         self._reach: Reach | None = None
         self._check = EvidenceCheck()
         self._driven_m = 0.0
+        self.fixes = 0
         self.doubt = Doubt(self.motion)
 
     @property
@@ -73,6 +77,7 @@ class Tracker:
 
     def take_in(self, fix: PoseEstimate, explained: bool) -> None:
         """Learn from a fix that the model explains, or start from one that it does not."""
+        self.fixes += 1
         explained = explained or self.motion.source == PoseSource.PRIOR
         if explained:
             self.motion = correction.correct(self.motion, fix, self._noise)

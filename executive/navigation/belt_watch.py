@@ -28,6 +28,12 @@ class BeltWatch:
         """The longest this drive may take [s]."""
         return LONGEST * self._planned_s + SLACK_S
 
+    def undone(self, now: TrackReading) -> float:
+        """The share of the way, by the belt that has more of it, that is not counted yet: 0 to 1."""
+        counted_m = (now.left_m - self._started_m[0], now.right_m - self._started_m[1])
+        far_m, done_m = max(zip(self._belts_m, counted_m, strict=True), key=lambda pair: abs(pair[0]))
+        return min(max(1.0 - done_m / far_m, 0.0), 1.0) if far_m else 0.0
+
     def problem(self, now: TrackReading) -> str | None:
         """What is wrong with this drive, None if nothing is."""
         elapsed_s = now.time_s - self._started_s

@@ -5,6 +5,7 @@ What other packages use of it stands here; the modules `events`, `truth` and `si
 
 from executive.record import events
 from executive.record.bus import EventBus, Listener
+from executive.record.continuation import cut_ticks
 from executive.record.digest import digest
 from executive.record.divergence import Divergence, first_divergence
 from executive.record.evidence import DETECTION_GRACE_S, first_leading, leading
@@ -43,6 +44,7 @@ __all__ = [
     "RunResult",
     "StrategyRow",
     "TruthRecorder",
+    "cut_ticks",
     "digest",
     "events",
     "first_divergence",

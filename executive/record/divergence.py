@@ -30,14 +30,18 @@ class Divergence:
 def first_divergence(recorded: Path, repeated: Path) -> Divergence | None:
     """None where both hold the same messages in the same order. RecordError if one is not there."""
     for old, new in zip_longest(read_record(recorded), read_record(repeated)):
-        if old == new:
-            continue
-        if old is None or new is None or (old.topic, old.time_ns) != (new.topic, new.time_ns):
-            there = min((m for m in (old, new) if m is not None), key=lambda m: m.time_ns)
-            return Divergence(there.time_s, there.topic, "", _named(old), _named(new))
-        name, was, now = _differing(old, new)
-        return Divergence(old.time_s, old.topic, name, was, now)
+        if old != new:
+            return divergence(old, new)
     return None
+
+
+def divergence(old: Message | None, new: Message | None) -> Divergence:
+    """In what two messages differ; None stands for the end of a record, and one of them is none."""
+    if old is None or new is None or (old.topic, old.time_ns) != (new.topic, new.time_ns):
+        there = min((m for m in (old, new) if m is not None), key=lambda m: m.time_ns)
+        return Divergence(there.time_s, there.topic, "", _named(old), _named(new))
+    name, was, now = _differing(old, new)
+    return Divergence(old.time_s, old.topic, name, was, now)
 
 
 def _named(message: Message | None) -> str:

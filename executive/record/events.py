@@ -44,6 +44,13 @@ class Stop:
 
 
 @dataclass(frozen=True)
+class Resumed:
+    """A run that was cut off goes on here, for the `number`th time; it looks before it drives."""
+
+    number: int
+
+
+@dataclass(frozen=True)
 class NodeChange:
     """A node's status changed. `reason` and `detail` say why a leaf or a guard ended it, empty otherwise."""
 

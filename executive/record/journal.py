@@ -59,6 +59,11 @@ class RunJournal:
         self._segment = segment
         self.write(events.SegmentEvent(segment))
 
+    @property
+    def under_way(self) -> Segment | None:
+        """The segment under way."""
+        return self._segment
+
     def waypoint(self, index: int, pose: PoseEstimate) -> Outcome[object]:
         """Judge a way-point that a leaf reports: reached only where this pose carries it, else why not."""
         target, within_m = waypoint_of(self._route, index)

@@ -68,7 +68,9 @@ class _McapSink:
         return self._hash.hexdigest()
 
     def _add(self, topic: Topic, event: object, stamp_ns: int) -> None:
-        name, payload = topic.name + topic.suffix(event), topic.encode(event, stamp_ns)
+        self._put(topic, topic.name + topic.suffix(event), stamp_ns, topic.encode(event, stamp_ns))
+
+    def _put(self, topic: Topic, name: str, stamp_ns: int, payload: bytes) -> None:
         absorb(self._hash, name, stamp_ns, payload)
         self._writer.add_message(
             self._channel(name, topic), stamp_ns, payload, publish_time=stamp_ns, sequence=self._sequence

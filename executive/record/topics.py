@@ -64,6 +64,7 @@ def _of_camera(event: events.ImageEvent | events.AnnotationsEvent) -> str:
 RECORD: tuple[Topic, ...] = (
     _own("/start", events.Start),
     _own("/stop", events.Stop),
+    _own("/resumed", events.Resumed),
     _own("/node", events.NodeChange),
     _own("/command", events.Command),
     _own("/estimate", PoseEstimate),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -38,6 +38,7 @@ from executive.run.assembly import TICK_S, set_up, write_start
 from executive.run.judging import exit_code, judged
 from executive.run.kept_files import keep_files
 from executive.run.progress import progress_bar
+from executive.run.recording import Recording, fresh
 from executive.run.resolve import resolve_scenario
 from executive.run.resolved import ResolvedScenario
 from executive.run.runner import RunEnd, ended_by, execute, interrupted
@@ -59,6 +60,8 @@ class RunOptions:
     """Whether the folder is refused while another process writes a run into it."""
     report: bool = True
     """Whether `report.html` is written; `longarm report` can do it later."""
+    cut_ticks: tuple[int, ...] = ()
+    """Where the run that this one repeats was cut off and went on."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +90,7 @@ def run_scenario(scenario: ResolvedScenario, options: RunOptions) -> Finished:
 
 def _run(scenario: ResolvedScenario, options: RunOptions) -> Finished:
     strategies = load_strategies()
-    scenario.localizer.spec.prepare(partial(print, file=sys.stderr, flush=True) if options.bar else _silent)
+    scenario.localizer.spec.prepare(teller(options.bar))
     watch = Stopwatch()
     folder = options.out or free_folder(Path("runs"), f"{scenario.name}-{scenario.seed}")
     made = not folder.exists()
@@ -115,23 +118,30 @@ def _written(
     text = keep_files(scenario, folder)
     write_whole(folder / "scenario.yaml", text)  # first, so that a run cut off can be repeated
     try:
-        with one_thread():
-            end = _execute(scenario, strategies, folder, text, watch, options.bar)
+        end = record_run(scenario, strategies, text, watch, fresh(folder, options.cut_ticks), options.bar)
     except LongarmError:
         unwrite(folder)  # what a user can mend leaves nothing half-written behind
         raise
+    return conclude(scenario, folder, end, watch, options.report)
+
+
+def conclude(
+    scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch, with_report: bool
+) -> Finished:
+    """Judge a run that has ended, and write its result."""
     if end.defect is not None:
         write_traceback(folder, end.defect)
     try:
         with held_back():
-            return _conclude(scenario, folder, end, watch, options.report)
+            return _conclude(scenario, folder, end, watch, with_report)
     except Exception as defect:
         write_traceback(folder, defect)
         raise
 
 
-def _silent(line: str) -> None:
-    """Where nobody looks on."""
+def teller(bar: bool) -> Callable[[str], None]:
+    """Where lines for whoever looks on go: nowhere, if nobody does."""
+    return partial(print, file=sys.stderr, flush=True) if bar else lambda line: None
 
 
 def report(folder: Path) -> Path:
@@ -146,14 +156,15 @@ def report(folder: Path) -> Path:
     return write_report(folder, _tree_svg(folder))
 
 
-def _execute(
+def record_run(
     scenario: ResolvedScenario,
     strategies: tuple[Strategy, ...],
-    folder: Path,
     text: str,
     watch: Stopwatch,
+    recording: Recording[Recorder],
     bar: bool,
 ) -> RunEnd:
+    """Execute a run and record it; `text` is the scenario as its folder has it."""
     route = scenario.mission.route()
     request = BackendRequest(
         world=scenario.world,
@@ -161,14 +172,14 @@ def _execute(
         seed=scenario.seed,
         tier=scenario.tier,
         rig=scenario.rig,
-        truth_path=folder / "truth.mcap",
+        truth_path=recording.truth_path,
         tick_s=TICK_S,
     )
-    with Recorder(folder / "record.mcap") as recorder:
+    with one_thread(), recording.recorder as recorder:
         try:
             write_start(recorder, scenario, text)
             with progress_bar(scenario.name, route, bar) as listeners:
-                prepared = set_up(scenario, strategies, request, recorder, watch, listeners)
+                prepared = set_up(scenario, strategies, request, recorder, watch, listeners, recording.cuts)
                 end = execute(prepared)
         except LongarmError:
             raise

@@ -29,6 +29,7 @@ from executive.record.command_log import logged
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
 from executive.record.versions import versions
+from executive.run.cuts import Cuts
 from executive.run.instrument import Context, TreeParts
 from executive.run.instruments import Together, instruments_there_are
 from executive.run.resolved import ResolvedScenario
@@ -71,12 +72,13 @@ def set_up(
     recorder: Recorder,
     watch: Stopwatch,
     listeners: Sequence[Listener] = (),
+    cuts: Cuts | None = None,
 ) -> Run:
     """The robot and all that drives it; what fails half way leaves the robot at rest and released."""
     with watch.measure("setup"):
         backend = scenario.backend.create(request)
     try:
-        return _prepare(scenario, strategies, backend, recorder, watch, listeners)
+        return _prepare(scenario, strategies, backend, recorder, watch, listeners, cuts or Cuts())
     except BaseException:
         backend.safe_stop()
         backend.close()
@@ -90,6 +92,7 @@ def _prepare(
     recorder: Recorder,
     watch: Stopwatch,
     listeners: Sequence[Listener],
+    cuts: Cuts,
 ) -> Run:
     route = scenario.mission.route()
     along = AlongRoute(route)
@@ -147,4 +150,5 @@ def _prepare(
         time_limit_s=scenario.time_limit_s,
         each_tick=each_tick,
         invalid=instruments.conclude,
+        cuts=cuts,
     )

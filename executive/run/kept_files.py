@@ -58,13 +58,37 @@ def keep_files(scenario: ResolvedScenario, folder: Path) -> str:
     return scenario.dump(kept)
 
 
-def changes(folder: Path) -> tuple[str, ...]:
-    """What has become of the files that a run used, each in a few words: `tree trek_to.yaml: line 14`."""
+def changes(folder: Path, but_copied: bool = False) -> tuple[str, ...]:
+    """What has become of the files that a run used, each in a few words: `tree trek_to.yaml: line 14`.
+
+    With `but_copied`, of those alone that a repetition does not take from the run folder.
+    """
+    entries = (entry for entry in _listing(folder) if not but_copied or not _is_taken(entry))
+    return tuple(words for entry in entries if (words := _changed(folder, entry)))
+
+
+def damaged(folder: Path) -> tuple[str, ...]:
+    """The copies in a run folder that are not what the run used, or are gone."""
+    copies = ((folder / entry["copy"], entry["sha256"]) for entry in _listing(folder) if entry["copy"])
+    return tuple(str(copy.relative_to(folder)) for copy, sha256 in copies if _hash(copy) != sha256)
+
+
+def _listing(folder: Path) -> list[dict[str, Any]]:
+    """What the manifest lists; nothing where there is none that can be read."""
     try:
-        listing = json.loads((folder / FILES / MANIFEST).read_text())["files"]
-        return tuple(words for entry in listing if (words := _changed(folder, entry)))
-    except (OSError, ValueError, KeyError, TypeError):
-        return ()
+        entries = json.loads((folder / FILES / MANIFEST).read_text())["files"]
+        return [entry for entry in entries if {"role", "name", "from", "copy", "sha256"} <= entry.keys()]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return []
+
+
+def _is_taken(entry: Mapping[str, Any]) -> bool:
+    """Whether a repetition takes this file from the run folder."""
+    return entry["copy"] is not None and not entry["copy"].startswith(f"{FILES}/{BESIDE}/")
+
+
+def _hash(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
 
 
 def _used(scenario: ResolvedScenario) -> Iterator[tuple[Path, str]]:
@@ -139,7 +163,7 @@ def _entry(path: Path, role: str, copied: str | None) -> dict[str, object]:
 def _changed(folder: Path, entry: Mapping[str, Any]) -> str:
     """How today's file differs from the one used; nothing where it does not, or is gone."""
     today, what = Path(entry["from"]), f"{entry['role']} {entry['name']}"
-    if not today.is_file() or hashlib.sha256(today.read_bytes()).hexdigest() == entry["sha256"]:
+    if _hash(today) in ("", entry["sha256"]):
         return ""
     if entry["copy"] is None or entry["role"] == "data":
         return f"{what}: it is another file"

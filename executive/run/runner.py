@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 from py_trees.behaviour import Behaviour
@@ -18,6 +18,7 @@ from executive.core.types import Outcome, Reason
 from executive.record import events
 from executive.record.journal import RunJournal
 from executive.record.recorder import Recorder
+from executive.run.cuts import LOOK, Cuts, Look
 from executive.tree.nodes.base import Leaf, Trace
 from executive.tree.nodes.guarded import Guarded
 from executive.tree.nodes.services import Services
@@ -57,6 +58,7 @@ class Run:
     each_tick: Callable[[], None] = lambda: None
     invalid: Callable[[], str | None] = lambda: None
     """Asked at the end: why the run proves nothing, None if it does."""
+    cuts: Cuts = field(default_factory=Cuts)
 
 
 def execute(run: Run) -> RunEnd:
@@ -84,27 +86,50 @@ def interrupted(interrupt: KeyboardInterrupt) -> RunEnd:
 
 
 def _loop(run: Run, changes: _Changes) -> RunEnd:
-    watch = run.stopwatch
-    limit_ticks = run.services.clock.ticks_for(run.time_limit_s)
-    sample_ticks = max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S))
     while True:
-        with watch.measure("tick"):
-            now = run.services.classification.tracker.sense(run.services.devices)
-        run.each_tick()
-        with watch.measure("tick"):
-            run.root.tick_once()
-        with watch.measure("record"):
-            changes.write()
-            if run.services.clock.ticks % sample_ticks == 0:
-                predicted = run.services.classification.predicted()
-                run.journal.telemetry(now, run.services.devices, predicted)
-            run.recorder.flush()
+        _tick(run, changes, run.root)
         if run.root.status is not Status.RUNNING:
             return _ended(run)
-        if run.services.clock.ticks >= limit_ticks:
+        if _time_is_up(run):
             return _out_of_time(run)
-        with watch.measure("advance"):
-            run.backend.advance()
+        run.cuts.pass_by(run.services, run.journal)
+        if run.cuts.look_due(run.services):
+            _look(run, changes)
+        _advance(run)
+
+
+def _tick(run: Run, changes: _Changes, root: Behaviour) -> None:
+    """Sense, tick, and write what changed."""
+    watch = run.stopwatch
+    with watch.measure("tick"):
+        now = run.services.classification.tracker.sense(run.services.devices)
+    run.each_tick()
+    with watch.measure("tick"):
+        root.tick_once()
+    with watch.measure("record"):
+        changes.write()
+        if run.services.clock.ticks % max(1, run.services.clock.ticks_for(TELEMETRY_PERIOD_S)) == 0:
+            run.journal.telemetry(now, run.services.devices, run.services.classification.predicted())
+        run.recorder.flush()
+
+
+def _advance(run: Run) -> None:
+    with run.stopwatch.measure("advance"):
+        run.backend.advance()
+
+
+def _time_is_up(run: Run) -> bool:
+    return run.services.clock.ticks >= run.services.clock.ticks_for(run.time_limit_s)
+
+
+def _look(run: Run, changes: _Changes) -> None:
+    """Stand still and look where the rover is; the tree waits meanwhile."""
+    look = Look(run.services, run.trace, run.journal)
+    changes.follow(LOOK, look.leaf)
+    with look.standing_still():
+        while look.under_way and not _time_is_up(run):
+            _advance(run)
+            _tick(run, changes, look.leaf)
 
 
 def _out_of_time(run: Run) -> RunEnd:
@@ -189,9 +214,13 @@ class _Changes:
     """Writes the nodes whose status changed since the last tick."""
 
     def __init__(self, run: Run) -> None:
-        self._run = run
+        self._run, self._nodes = run, dict(run.paths)
         self._last: dict[str, Status] = dict.fromkeys(run.paths, Status.INVALID)
         self._outcomes: dict[str, Outcome[object]] = {}
+
+    def follow(self, path: str, node: Behaviour) -> None:
+        """From now on this node, which is none of the tree's, as well."""
+        self._nodes[path], self._last[path] = node, Status.INVALID
 
     def write(self) -> None:
         self._outcomes.update(self._run.trace.take_ended())
@@ -201,7 +230,7 @@ class _Changes:
 
     def _changed(self) -> Iterator[tuple[str, Status]]:
         last, ended_again = self._last, self._outcomes
-        for path, node in self._run.paths.items():
+        for path, node in self._nodes.items():
             status = node.status
             if status is not last[path] or path in ended_again:
                 last[path] = status
@@ -209,7 +238,7 @@ class _Changes:
 
     def _event(self, path: str, status: Status) -> events.NodeChange:
         outcome = self._outcomes.get(path)
-        if outcome is None or not isinstance(self._run.paths[path], Leaf | Guarded):
+        if outcome is None or not isinstance(self._nodes[path], Leaf | Guarded):
             return events.NodeChange(path, status.value.lower())
         reason = "" if outcome.reason is Reason.DONE else str(outcome.reason)
         return events.NodeChange(path, status.value.lower(), reason, outcome.detail)

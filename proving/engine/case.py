@@ -29,7 +29,7 @@ class Case:
 
     `text`, where given, is the scenario itself, and `file` only what messages call it; `overrides` are texts
     `key=value` as with `--set`. `instead` gives texts that stand for tree files, by absolute path. `key`
-    tells the cases of one batch apart.
+    tells the cases of one batch apart. `cut_ticks` are where the run that this one repeats was cut off.
     """
 
     key: str
@@ -41,6 +41,7 @@ class Case:
     overrides: tuple[str, ...] = ()
     instead: Mapping[str, str] = field(default_factory=dict)
     limits: Limits = field(default_factory=Limits)
+    cut_ticks: tuple[int, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """Plain data that `from_json` reads back."""
@@ -59,6 +60,7 @@ class Case:
             "folder": Path(data["folder"]),
             "overrides": tuple(data["overrides"]),
             "limits": Limits(**data["limits"]),
+            "cut_ticks": tuple(data.get("cut_ticks", ())),
         }
         return cls(**data | parts)
 

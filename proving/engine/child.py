@@ -43,7 +43,8 @@ def _run(case: Case) -> int:
     scenario = resolve_source(source, case.seed, case.tier, case.overrides)
     if case.instead:
         scenario = scenario.with_trees({Path(file): text for file, text in case.instead.items()})
-    finished = app.run_scenario(scenario, app.RunOptions(out=case.folder, bar=False, report=False))
+    options = app.RunOptions(out=case.folder, bar=False, report=False, cut_ticks=case.cut_ticks)
+    finished = app.run_scenario(scenario, options)
     return DONE if finished.defect is None else _blame(finished.defect)
 
 

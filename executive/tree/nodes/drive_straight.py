@@ -19,7 +19,8 @@ class DriveStraight(DrivingLeaf):
     def belts(self) -> Outcome[Belts]:
         motion = self.services.classification.motion
         gauge = self.services.rig.rover.track_gauge_m
-        return Outcome(Reason.DONE, value=guidance.straight(motion, self.distance, self.turn, gauge))
+        distance, turn = self._undone * self.distance, self._undone * self.turn
+        return Outcome(Reason.DONE, value=guidance.straight(motion, distance, turn, gauge))
 
 
 class DriveBlind(DrivingLeaf):

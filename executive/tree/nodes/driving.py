@@ -56,6 +56,18 @@ class DrivingLeaf(ActionLeaf):
 
     outcomes: ClassVar[tuple[Reason, ...]] = DRIVING_OUTCOMES
 
+    _undone = 1.0
+    """Share of the drive that is left to do, where it goes on after it was cut off."""
+
+    def begin(self) -> None:
+        self._undone = 1.0
+        super().begin()
+
+    def resume(self) -> None:
+        """Plan anew from where the rover was found."""
+        self._undone *= self._belts.undone(self.services.devices[DRIVE].read())
+        super().begin()
+
     def belts(self) -> Outcome[Belts]:
         """The belt travels to drive, or why not."""
         raise TypeError(f"{type(self).__name__} has no belts")

@@ -9,7 +9,7 @@ class Wait(Leaf):
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import NoneType
 from typing import ClassVar, get_args, get_type_hints
 
@@ -59,12 +59,33 @@ class Leaf(Declared, Behaviour):
     def halt(self) -> None:
         """Called once when an entered leaf ends or is interrupted; must leave its device safe."""
 
+    def suspend(self) -> None:
+        """Called where a run that was cut off goes on: rest, while it is looked where the rover is."""
+        self.halt()
+
+    def resume(self) -> None:
+        """Called after that look: do what is left to do. By default the leaf begins anew."""
+        self.begin()
+
     def initialise(self) -> None:
         self.trace.entered[self.path] = self
+        self._begun(self.begin)
+
+    def stand_still(self) -> None:
+        """Suspend the leaf, whose errors are its own."""
+        with ErrorsOf(self.path):
+            self.suspend()
+
+    def go_on(self, unless: Outcome[object] | None) -> None:
+        """Resume a suspended leaf; or let it end with this outcome at its next step."""
+        self._begun(self.resume if unless is None else _nothing)
+        self._refused = self._refused or unless
+
+    def _begun(self, begin: Callable[[], None]) -> None:
         self._refused = None
         with ErrorsOf(self.path):
             try:
-                self.begin()
+                begin()
             except PortError as error:
                 self._refused = error.outcome
 
@@ -101,6 +122,10 @@ class Leaf(Declared, Behaviour):
         if self.trace.entered.pop(self.path, None) is not None or new_status is not Status.INVALID:
             with ErrorsOf(self.path):
                 self.halt()
+
+
+def _nothing() -> None:
+    """What a leaf does that is not to go on."""
 
 
 class ErrorsOf:

@@ -17,6 +17,12 @@ class Wait(Leaf):
     def begin(self) -> None:
         self.until_ticks = self.services.clock.ticks + self.services.clock.ticks_for(self.duration)
 
+    def suspend(self) -> None:
+        """Time passes while one looks, too."""
+
+    def resume(self) -> None:
+        """The wait ends when it would have."""
+
     def step(self) -> Outcome[object] | None:
         if self.services.clock.ticks < self.until_ticks:
             return None
