@@ -36,6 +36,9 @@ class GuidanceLimits:
 
     steer_limit_rad: float = math.radians(12.0)
     miss_fraction: float = 0.3  # of the tolerance: the miss that is worth a correction
+    slack_m: float = (
+        0.006  # the miss that `trek_to` does not turn for: no turn on the spot is finer than that
+    )
     sigmas: float = 3.0
 
 
@@ -83,21 +86,24 @@ def plan_leg(
 ) -> Outcome[Belts]:
     """The next leg towards `target`, DONE with its belts; or why there is none.
 
-    OFF_HEADING: must turn on the spot first. OFF_TRACK: would come too near the off-track margin.
+    OFF_HEADING: must turn on the spot first, as going straight on would miss the target. OFF_TRACK: would
+    come too near the off-track margin.
     """
     remaining = distance_m(pose, target)
     error = heading_error_rad(pose, target)
     if abs(error) > math.pi / 2 and remaining <= 2 * segment.tolerance_m:
         return Outcome(Reason.OVERSHOOT, f"the target lies {remaining * 1e3:.0f} mm behind")
-    if abs(error) > limits.steer_limit_rad:
-        return Outcome(Reason.OFF_HEADING, f"{math.degrees(error):.1f} deg off the bearing to the target")
     miss = remaining * math.sin(error)
+    sharp = abs(error) > limits.steer_limit_rad
+    near_enough = abs(miss) <= max(limits.slack_m, limits.miss_fraction * segment.tolerance_m)
+    if sharp and not (near_enough and abs(error) < math.pi / 2):
+        return Outcome(Reason.OFF_HEADING, f"{math.degrees(error):.1f} deg off the bearing to the target")
     offset = segment.offset(pose.x_m, pose.y_m)
     needed = (
         abs(offset.cross_m) > segment.on_track_m or abs(miss) > limits.miss_fraction * segment.tolerance_m
     )
     leg = min(longest_m, remaining)
-    steer = error if needed else 0.0
+    steer = error if needed and not sharp else 0.0
     drift_m = leg * abs(math.sin(wrap_rad(pose.heading_rad - segment.bearing_rad)))
     approaching = offset.cross_m * math.sin(wrap_rad(pose.heading_rad - segment.bearing_rad)) > 0
     strayed_m = distance_from_m(segment, pose.x_m, pose.y_m)

@@ -60,6 +60,28 @@ def test_a_large_heading_error_asks_for_a_turn_on_the_spot() -> None:
     assert leg(pose(0.2, 0.0, 0.5)).reason is Reason.OFF_HEADING
 
 
+@given(
+    remaining_m=st.floats(0.001, 0.3),
+    error_rad=st.floats(-3.1, 3.1),
+    tolerance_m=st.sampled_from([0.01, 0.025, 0.1]),
+)
+def test_no_leg_is_refused_for_a_heading_that_the_tree_takes_for_good(
+    remaining_m, error_rad, tolerance_m
+) -> None:
+    """As `trek_to` asks: `facing`, within 10 degrees or a miss of 6 mm."""
+    at = pose(1.0 - remaining_m * math.cos(error_rad), -remaining_m * math.sin(error_rad), 0.0)
+    miss_m = remaining_m * abs(math.sin(error_rad))
+    faced = abs(error_rad) <= math.radians(10.0) or (abs(error_rad) < math.pi / 2 and miss_m <= 0.006)
+    planned = leg(at, replace(SEGMENT, tolerance_m=tolerance_m))
+    assert not (faced and planned.reason is Reason.OFF_HEADING)
+
+
+def test_a_rover_that_would_miss_a_near_target_by_little_drives_straight_on() -> None:
+    planned = leg(pose(0.98, 0.005, 0.0))
+    assert planned.ok
+    assert planned.value.left_m == pytest.approx(planned.value.right_m)
+
+
 def test_beyond_the_off_track_margin_there_is_no_leg() -> None:
     assert leg(pose(0.2, 0.26, -0.1)).reason in (Reason.OFF_TRACK, Reason.OFF_HEADING)
     assert leg(pose(0.2, 0.249, -0.2)).reason is Reason.OFF_TRACK
