@@ -47,7 +47,9 @@ def _told(row: JudgedRow) -> str:
 def _figures(result: RunResult) -> list[tuple[str, str]]:
     truth, seen = result.truth, result.localisation
     tried = ", ".join(row.name for row in result.strategies) or "none"
+    cuts = ", ".join(f"{at_s / 60:.1f} min" for at_s in result.resumed_s)
     return [
+        *([("cut off, and gone on at", cuts)] if cuts else []),
         ("way-points", f"{result.waypoints.reached} of {result.waypoints.total}"),
         ("true error at the end", _length(truth.final_error_m)),
         ("driven beyond the margin", _length(truth.driven_beyond_off_track_m)),

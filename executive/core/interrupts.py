@@ -44,7 +44,7 @@ def raise_when_asked() -> None:
 @contextmanager
 def held_back() -> Iterator[None]:
     """Let what is written here be written whole: whoever asks meanwhile is not heard, the end is near."""
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in ENDING} if _can_handle() else {}
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in ENDING} if can_handle() else {}
     try:
         yield
     finally:
@@ -52,6 +52,6 @@ def held_back() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def _can_handle() -> bool:
+def can_handle() -> bool:
     """Only the main thread may say what becomes of signals."""
     return threading.current_thread() is threading.main_thread()

@@ -13,6 +13,7 @@ from executive.core.types import PoseEstimate, Reason
 from executive.record.digest import digest
 from executive.record.events import (
     NodeChange,
+    Resumed,
     RouteEvent,
     SegmentEvent,
     Start,
@@ -81,6 +82,7 @@ def summary_of(history: History, world: History, content: str, figures: RunFigur
         strategies=strategy_rows(history),
         faults=faults,
         false_alarms=false_alarms(history, faults),
+        resumed_s=tuple(at.time_s for at in history.all(Resumed)),
     )
     return RunResult.from_json(result.to_json())  # what is no number is None, here as in the file
 

@@ -130,6 +130,8 @@ class RunResult:
     expectations: tuple[JudgedRow, ...] = ()
     safety: tuple[JudgedRow, ...] | None = None
     """None where nobody judged it."""
+    resumed_s: tuple[float, ...] = ()
+    """When, by mission time, it was cut off and went on."""
 
     def to_json(self) -> dict[str, object]:
         """Plain data in the order of the fields; NaN and infinities, which JSON cannot say, as None."""
@@ -137,6 +139,8 @@ class RunResult:
         data["faults"] = [_plain(fault.to_json()) for fault in self.faults]
         if self.safety is None:
             del data["safety"]
+        if not self.resumed_s:
+            del data["resumed_s"]
         return data
 
     @classmethod

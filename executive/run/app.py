@@ -205,7 +205,8 @@ def _conclude(
     write_sums(folder)
     if with_report:
         write_report(folder, _tree_svg(folder))
-    code = exit_code(result.outcome, met) if end.signal is None else 128 + end.signal
+    asked = None if end.defect is not None else end.signal
+    code = exit_code(result.outcome, met) if asked is None else 128 + asked
     return Finished(folder, read_result(folder / "result.json"), code, end.defect)
 
 

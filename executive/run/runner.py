@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from py_trees.behaviour import Behaviour
@@ -13,6 +13,7 @@ from executive.core.clock import Stopwatch
 from executive.core.devices import DRIVE
 from executive.core.errors import NodeRaised
 from executive.core.interrupts import number_of, words_of
+from executive.core.pause import pausable
 from executive.core.ports import Backend, Devices
 from executive.core.types import Outcome, Reason
 from executive.record import events
@@ -65,7 +66,8 @@ def execute(run: Run) -> RunEnd:
     """Run the tree to its end. Always: leaves terminated, rover at rest, stop written, record closed."""
     end, changes = RunEnd("error", "the run was interrupted", cut=True), _Changes(run)
     try:
-        end = _loop(run, changes)
+        with pausable() as wait_while_paused:
+            end = _loop(run, changes, wait_while_paused)
     except KeyboardInterrupt as interrupt:
         end = interrupted(interrupt)
     except Exception as defect:
@@ -85,9 +87,10 @@ def interrupted(interrupt: KeyboardInterrupt) -> RunEnd:
     return RunEnd("safe_hold", words_of(interrupt), cut=True, signal=number_of(interrupt))
 
 
-def _loop(run: Run, changes: _Changes) -> RunEnd:
+def _loop(run: Run, changes: _Changes, wait_while_paused: Callable[[], None]) -> RunEnd:
     while True:
         _tick(run, changes, run.root)
+        wait_while_paused()
         if run.root.status is not Status.RUNNING:
             return _ended(run)
         if _time_is_up(run):
@@ -180,7 +183,7 @@ def _rest(run: Run, changes: _Changes, end: RunEnd) -> RunEnd:
         except KeyboardInterrupt:
             continue  # the rest has priority over whoever is in a hurry
         except Exception as defect:
-            end = ended_by(end.defect or defect)
+            end = replace(ended_by(end.defect or defect), signal=end.signal)
     return end
 
 

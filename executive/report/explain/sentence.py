@@ -11,6 +11,7 @@ from executive.record.events import (
     HypothesesEvent,
     LogEvent,
     NodeChange,
+    Resumed,
     RouteEvent,
     Stop,
     StrategyEvent,
@@ -53,6 +54,9 @@ def _came_up(history: History, end_s: float) -> Iterator[str]:
     )
     if injected:
         yield f"injected {'fault' if len(injected) == 1 else 'faults'} {_named(injected)} took effect"
+    cuts = [duration(time_s) for time_s, _ in _until(history.all(Resumed), end_s)]
+    if cuts:
+        yield f"the run was cut off and went on at {_named(cuts)}"
     failures = _failures(history, end_s)
     if failures:
         first = failures[0]

@@ -37,6 +37,7 @@ from executive.record.events import (
     NodeChange,
     Placed,
     PlacedEvent,
+    Resumed,
     Rock,
     RouteEvent,
     SegmentEvent,
@@ -83,6 +84,7 @@ EVENTS = (
     LogEvent(Level.WARNING, "pool", "none left"),
     Stop("help", "no_strategy", "x"),
     Stop("reached"),
+    Resumed(2),
 )
 TRUTH_EVENTS = (TruthEvent((1, 2, 3), (0, 0, 0, 1), 0.1, slip_left=0.3), FaultEvent("rock", True))
 
