@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import sys
 
 SETTINGS = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR", "OPENBLAS_CORETYPE": "Haswell"}
 """numpy and OpenBLAS sum as the processor they find allows: here, as if each had AVX2 and none AVX-512."""
@@ -12,8 +13,9 @@ SETTINGS = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR", "OPENBLA
 def settle() -> None:
     """Choose before numpy is loaded, for this process and its children; what the user has set stays.
 
-    Nothing happens on other architectures. A numpy that is loaded already has chosen: its children settle.
+    Nothing happens on other architectures, nor where numpy is loaded already and has chosen: children then choose
+    as their parent did.
     """
-    if platform.machine().lower() in ("x86_64", "amd64"):
+    if "numpy" not in sys.modules and platform.machine().lower() in ("x86_64", "amd64"):
         for name, value in SETTINGS.items():
             os.environ.setdefault(name, value)

@@ -70,7 +70,7 @@ SETTINGS = (
     Setting(blind_every=1),
     Setting(blind_every=1, backwards=True),
     Setting(blind_every=3),
-    Setting(blind_every=6),  # seldom enough for a back_off to come to its second turn
+    Setting(blind_every=9),  # seldom enough for a back_off to come to its second turn
     Setting(pixel_sigma=20.0),
     Setting(pixel_sigma=15.0, blind_every=4),
     Setting(pixel_sigma=15.0, blind_every=5),
