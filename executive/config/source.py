@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -43,7 +43,8 @@ class Mark:
 
 @dataclass(frozen=True)
 class Source:
-    """A file's data and places. `problems` are those after which reading could go on.
+    """A file's data and places. `problems` are those after which reading could go on; `spoilt` are the values
+    of which they speak, and of which no more need be said.
 
     `folders` says which folder relative references under a place start from (the longest prefix wins).
     """
@@ -53,6 +54,7 @@ class Source:
     keys: Mapping[Place, Mark] = field(default_factory=dict)
     folders: Mapping[Place, Path] = field(default_factory=dict)
     problems: tuple[Problem, ...] = ()
+    spoilt: frozenset[Mark] = frozenset()
 
     def at(self, place: Place) -> Mark:
         """Where the value stands, or the nearest thing around it that stands in the file."""
@@ -82,6 +84,7 @@ class Source:
             {p[cut:]: mark for p, mark in self.keys.items() if _within(p, place)},
             {(): self.folder(place)}
             | {p[cut:]: folder for p, folder in self.folders.items() if _within(p, place)},
+            spoilt=self.spoilt,
         )
 
     def graft(self, place: Place, other: Source) -> Source:
@@ -95,6 +98,16 @@ class Source:
             folders=_without(self.folders, place)
             | {place + p: folder for p, folder in other.folders.items()},
             problems=self.problems + other.problems,
+            spoilt=self.spoilt | other.spoilt,
+        )
+
+    def without(self, place: Place, problems: Iterable[Problem]) -> Source:
+        """This source where the value at `place` cannot be read for these problems: nothing stands there."""
+        return replace(
+            self,
+            data=_put(self.data, place, None),
+            problems=(*self.problems, *problems),
+            spoilt=self.spoilt | {self.at(place)},
         )
 
     def only_member(self, place: Place) -> Source:
@@ -118,6 +131,7 @@ class Source:
             {p: mark for p, mark in self.values.items() if not p or p[0] in keys},
             {p: mark for p, mark in self.keys.items() if p and p[0] in keys},
             {p: folder for p, folder in self.folders.items() if not p or p[0] in keys},
+            spoilt=self.spoilt,
         )
 
 
@@ -137,7 +151,8 @@ def read_text(text: str, name: str) -> Source:
     """Read text as one YAML document; ConfigError when it is not."""
     builder = _Builder(name)
     data = builder.value(_composed(text, name), ())
-    return Source(data, builder.values, builder.keys, problems=tuple(builder.problems))
+    spoilt = frozenset(builder.spoilt)
+    return Source(data, builder.values, builder.keys, problems=tuple(builder.problems), spoilt=spoilt)
 
 
 def _text(path: Path, start: Mark) -> str:
@@ -241,6 +256,7 @@ class _Builder:
         self.values: dict[Place, Mark] = {}
         self.keys: dict[Place, Mark] = {}
         self.problems: list[Problem] = []
+        self.spoilt: list[Mark] = []
 
     def value(self, node: yaml.Node, place: Place) -> Any:
         mark = self.mark(node)
@@ -254,7 +270,10 @@ class _Builder:
         if isinstance(node, yaml.SequenceNode):
             self.refuse_tag(node, "tag:yaml.org,2002:seq")
             return [self.value(child, (*place, i)) for i, child in enumerate(node.value)]
-        return self.scalar(node) if isinstance(node, yaml.ScalarNode) else None
+        before = len(self.problems)
+        scalar = self.scalar(node) if isinstance(node, yaml.ScalarNode) else None
+        self.spoilt += [mark] * (len(self.problems) > before)
+        return scalar
 
     def mapping(self, node: yaml.MappingNode, place: Place) -> dict[str, Any]:
         self.refuse_tag(node, "tag:yaml.org,2002:map")

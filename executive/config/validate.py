@@ -25,10 +25,15 @@ class Strict(BaseModel):
 
 
 class Problems:
-    """Collects complaints, so that one bad part does not hide the others."""
+    """Collects complaints, so that one bad part does not hide the others.
 
-    def __init__(self, found: Iterable[Problem] = ()) -> None:
-        self.found: list[Problem] = list(found)
+    With a source it begins with the problems of that, and takes no more at values that these have spoilt.
+    """
+
+    def __init__(self, source: Source | None = None) -> None:
+        self.found: list[Problem] = list(source.problems) if source else []
+        self._given = frozenset(self.found)
+        self._spoilt = {(mark.file, mark.line, mark.column) for mark in source.spoilt} if source else set()
 
     def add(self, problem: Problem) -> None:
         self.found.append(problem)
@@ -43,8 +48,10 @@ class Problems:
 
     def check(self) -> None:
         """ConfigError with everything found, if anything was."""
-        if self.found:
-            raise ConfigError(self.found)
+        at = ((each, (each.file, each.line, each.column)) for each in self.found)
+        found = [each for each, where in at if each in self._given or where not in self._spoilt]
+        if found:
+            raise ConfigError(found)
 
 
 def parse(source: Source, model: type[M], at: Place = (), beside: Sequence[str] = ()) -> M:
@@ -53,13 +60,14 @@ def parse(source: Source, model: type[M], at: Place = (), beside: Sequence[str] 
     The validation context is `{"folder": Path}`, where relative file names start from. `beside` has keys that
     others read: they are left alone.
     """
-    problems = Problems(source.problems)
+    problems = Problems(source)
     data = source.get(at)
     if not isinstance(data, dict):
         problems.add(
             source.at(at).problem(f"got {shown(data)}, expected a mapping with {_fields_text(model)}")
         )
-        raise ConfigError(problems.found)
+        problems.check()
+        raise ConfigError([])  # of what is spoilt all is said
     data = {key: value for key, value in data.items() if key not in beside}
     folder = {"folder": source.folder(at)}
     parsed = None
@@ -137,6 +145,9 @@ def _problem(
             )
         case "quantity" | "value_error" | "located":
             return source.at(place).problem(str(context.get("text") or context.get("error") or detail["msg"]))
+        case "too_short":
+            least = context["min_length"]
+            return source.at(place).problem(f"got {got}, expected {least} or more")
         case kind:
             expected = _EXPECTED.get(kind) or _plain(detail["msg"])
             return source.at(place).problem(f"got {got}, expected {expected}")

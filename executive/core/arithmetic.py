@@ -13,8 +13,8 @@ SETTINGS = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR", "OPENBLA
 def settle() -> None:
     """Choose before numpy is loaded, for this process and its children; what the user has set stays.
 
-    Nothing happens on other architectures, nor where numpy is loaded already and has chosen: children then choose
-    as their parent did.
+    Nothing happens on other architectures, nor where numpy is loaded already and has chosen: children then
+    choose as their parent did.
     """
     if "numpy" not in sys.modules and platform.machine().lower() in ("x86_64", "amd64"):
         for name, value in SETTINGS.items():

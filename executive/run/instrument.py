@@ -73,9 +73,9 @@ class Instrument:
 
 @dataclass(frozen=True)
 class Setting:
-    """Where a scenario takes place: backend, tier (None: unknown), number of way-points."""
+    """Where a scenario takes place: backend and tier (None: not known), number of way-points."""
 
-    backend: str
+    backend: str | None
     tier: str | None
     waypoints: int
 

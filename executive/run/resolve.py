@@ -85,7 +85,7 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
     problems.attempt(_check_policy, source)
     world = problems.attempt(_world, source, backend) if backend else None
     rig = problems.attempt(rig_from, source, ("rig",), backend.rig) if backend else None
-    settings = _settings(source, instruments, _setting(source, backend_name, tier), problems)
+    settings = _settings(source, instruments, _setting(source, backend, tier), problems)
     tree_path = problems.attempt(_tree_path, source)
     tree = problems.attempt(load_tree, tree_path) if tree_path else None
     inputs = problems.attempt(_inputs, source, tree) if tree else None
@@ -142,14 +142,17 @@ def _drawn(source: Source, seed: int, instruments: Sequence[InstrumentSpec[Any]]
 
 
 def as_scenario(source: Source) -> Source:
-    """The file's data as a scenario with its mission inline."""
+    """The file's data as a scenario with its mission inline; without one that cannot be read."""
     data = source.data
     if isinstance(data, dict) and "mission" in data and "scenario" not in data and "waypoints" in data:
         return _around(source, str(data["mission"]))
     if isinstance(data, dict) and isinstance(data.get("mission"), str):
         place: Place = ("mission",)
-        path = find("missions", data["mission"], source.folder(), source.at(place))
-        return source.graft(place, read(path, shown(path)))
+        try:
+            path = find("missions", data["mission"], source.folder(), source.at(place))
+            return source.graft(place, read(path, shown(path)))
+        except ConfigError as error:
+            return source.without(place, error.problems)
     return source
 
 
@@ -168,11 +171,11 @@ def _text(source: Source, key: str, default: str) -> str:
     return value if isinstance(value, str) else default
 
 
-def _setting(source: Source, backend: str, tier: str | None) -> Setting:
+def _setting(source: Source, backend: BackendSpec | None, tier: str | None) -> Setting:
     """What instruments must fit, as far as the file says it; what is wrong with that is message elsewhere."""
     mission = source.data.get("mission") if isinstance(source.data, dict) else None
     points = mission.get("waypoints") if isinstance(mission, dict) else None
-    return Setting(backend, tier, len(points) if isinstance(points, list) else 0)
+    return Setting(backend.name if backend else None, tier, len(points) if isinstance(points, list) else 0)
 
 
 def _unfit(source: Source, localizer: ChosenLocalizer, backend: BackendSpec) -> Iterator[Problem]:

@@ -85,9 +85,9 @@ class _Trees:
         return result
 
     def read(self, source: Source, stack: tuple[Path, ...]) -> TreeSpec:
-        problems = Problems()
+        problems = Problems(source)
         file = problems.attempt(parse, source, TreeFile)
-        ports = problems.attempt(declared_ports, source, file) if file else ()
+        ports = problems.attempt(declared_ports, source)
         reader = TreeReader(source, self.types, ports or (), problems, partial(self._tree, source, stack))
         has_root = isinstance(source.data, dict) and source.data.get("root") is not None
         root = reader.node(("root",)) if has_root else None

@@ -23,7 +23,8 @@ WALL_SLOWER, WALL_GRACE_S = 10.0, 60.0
 class Trier:
     """`best` is the smallest case so far that fails with `wanted`, `result` its result.
 
-    After `most` runs nothing is tried any more. `tell` hears of each step that was kept.
+    After `most` runs nothing is tried any more. `tell` hears of each step that was kept. `loosely`: the same
+    is violated first, whatever else of the failure changes.
     """
 
     server: ForkServer
@@ -33,6 +34,9 @@ class Trier:
     best: Data = field(default_factory=dict)
     result: RunResult = RunResult()  # noqa: RUF009  (frozen)
     wanted: Failure | None = None
+    loosely: bool = False
+    found: Failure | None = None
+    """How the best case fails."""
     limits: Limits = field(default_factory=Limits)
     runs: int = 0
     known: dict[str, bool] = field(default_factory=dict)
@@ -46,7 +50,7 @@ class Trier:
         self.wanted, self.result, wall_s = self._run(data, scenario)
         self.limits = Limits(wall_s=WALL_SLOWER * wall_s + WALL_GRACE_S)
         self.known[scenario.dump()] = True
-        self.best = data
+        self.best, self.found = data, self.wanted
         return self.wanted
 
     def keeps(self, data: Data, what: str) -> bool:
@@ -75,9 +79,9 @@ class Trier:
         same = scenario.dump()
         if same not in self.known:
             failure, result, _ = self._run(data, scenario)
-            self.known[same] = failure == self.wanted
+            self.known[same] = failure is not None and failure.is_as(self.wanted, self.loosely)
             if self.known[same]:
-                self.result = result
+                self.result, self.found = result, failure
         return self.known[same]
 
     def _run(self, data: Data, scenario: ResolvedScenario) -> tuple[Failure | None, RunResult, float]:
