@@ -37,3 +37,9 @@ def test_what_the_user_has_chosen_stays():
         "import executive, os; print(os.environ['OPENBLAS_CORETYPE'], 'numpy' in __import__('sys').modules)"
     )
     assert printed(code, OPENBLAS_CORETYPE="Nehalem") == "Nehalem False"
+
+
+def test_these_tests_sum_as_runs_do():
+    from numpy._core._multiarray_umath import __cpu_features__ as features
+
+    assert not features.get("X86_V4")
