@@ -88,7 +88,7 @@ backend: fake
 localizer: overhead
 tier: geometric
 world: {pixel_sigma: 0.7}
-time_limit: 4 h
+time_limit: 40 min
 faults:
   - encoder_scale: {side: left, factor: 101 %}
   - left_half: {}
@@ -142,9 +142,8 @@ def test_nothing_is_left_of_what_does_not_matter_and_no_less_than_is_asked_for()
 
 def test_a_case_of_five_faults_shrinks_to_the_two_that_make_it_fail(five, tmp_path):
     told = []
-    made = minimise(five, tell=told.append)
+    made = minimise(five, tell=told.append, loosely=True)
     assert made.failure.is_as(Failure("expectation", "outcome is reached"), loosely=True)
-    assert made.weaker == ()
     kinds = [next(iter(entry)) for entry in made.after["faults"]]
     assert kinds == ["left_half", "right_half"]
     assert len(made.after["mission"]["waypoints"]) == 2
@@ -174,7 +173,8 @@ def test_a_run_folder_is_minimised_from_its_own_scenario(suite, tmp_path, capsys
     file.write_text(text + "  - encoder_scale: {side: left, factor: 101 %}\n")
     run(file, RunOptions(out=tmp_path / "run", bar=False, report=False))
     output = tmp_path / "minimal.yaml"
-    assert command_line.main([str(tmp_path / "run"), "-o", str(output), "--json"], standalone_mode=False) == 0
+    arguments = [str(tmp_path / "run"), "-o", str(output), "--loosely", "--json"]
+    assert command_line.main(arguments, standalone_mode=False) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["sizes"]["faults"] == {"before": 2, "after": 1}
     data = yaml.safe_load(output.read_text())

@@ -18,16 +18,19 @@ mission:
   waypoints:
     - {x: 2.2 m, y: -0.5 m}
     - {x: 2.3 m, y: -0.5 m}
+time_limit: {limit}
 """
 
 pytestmark = pytest.mark.sim
 
 
-def digest_of(folder: Path, seed: int, tier: str, out: str, hash_seed: str, threads: str = "2") -> str:
+def digest_of(
+    folder: Path, seed: int, tier: str, out: str, hash_seed: str, threads: str = "2", limit: str = "2 h"
+) -> str:
     """The digest of a run in a fresh process that works in `folder`, with so many threads to a product."""
     folder.mkdir(exist_ok=True)
     file = folder / "hop.yaml"
-    file.write_text(MISSION)
+    file.write_text(MISSION.replace("{limit}", limit))
     command = [
         sys.executable,
         "-c",
@@ -59,7 +62,8 @@ def test_a_seed_repeats_bit_for_bit_wherever_it_runs(geometric: str, tmp_path: P
 
 
 def test_the_full_tier_repeats_bit_for_bit_on_any_number_of_cores(tmp_path: Path) -> None:
-    one, again = (digest_of(tmp_path / f"{n}", 3, "full", "out", f"{n}", threads=f"{n}") for n in (1, 2))
+    runs = [(tmp_path / f"{n}", 3, "full", "out", f"{n}", f"{n}", "3 min") for n in (1, 2)]
+    one, again = (digest_of(*each) for each in runs)
     assert again == one
 
 

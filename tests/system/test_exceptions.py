@@ -84,8 +84,10 @@ def test_every_leaf_of_the_shipped_trees_is_entered(census: Census, leaves: set[
 def test_a_leaf_that_raises_at_a_tick_leaves_the_rover_safe(
     census: Census, tmp_path: Path, tick: int
 ) -> None:
+    """At its first tick in every place where it stands, at later ones once for each type of leaf."""
     calls = [call for call in census if call.method == "step" and call.call == tick]
-    assert len(calls) > 20
+    calls = calls if tick == 1 else list({type_of(call.path): call for call in calls}.values())
+    assert len(calls) > (20 if tick == 1 else 6)
     assert [b for call in calls for b in breaches(run(census[call], tmp_path, call), call)] == []
 
 
@@ -93,10 +95,14 @@ def test_a_leaf_that_raises_at_a_tick_leaves_the_rover_safe(
 def test_a_leaf_that_raises_on_entry_or_exit_leaves_the_rover_safe(
     census: Census, leaves: set[str], tmp_path: Path, method: str
 ) -> None:
-    one_of_each = {path.rpartition("/")[2].partition("#")[0]: path for path in sorted(leaves)}
+    one_of_each = {type_of(path): path for path in sorted(leaves)}
     assert len(one_of_each) > 18
     calls = [Sabotage(path, method, 1) for path in one_of_each.values()]
     assert [b for call in calls for b in breaches(run(census[call], tmp_path, call), call)] == []
+
+
+def type_of(path: str) -> str:
+    return path.rpartition("/")[2].partition("#")[0]
 
 
 def break_in(obj: Any, name: str, after: int = 0, error: BaseException | None = None) -> None:

@@ -28,26 +28,16 @@ REPRESENTATIVE = (
 )
 
 
-@pytest.fixture(scope="module")
-def suite():
-    """All of it, resolved, which finds every problem of a file."""
-    return collect(FILES)
-
-
-def test_every_fault_of_the_catalogue_has_a_scenario(suite):
+def test_the_scenarios_show_every_fault_every_kind_of_onset_and_profile_and_expect_something():
+    """In one, as it takes seconds to resolve all of them; which finds every problem of a file."""
+    suite = collect(FILES)
     injected = {fault.spec.name for each in suite for fault in each.scenario.of(FAULTS)}
     assert set(registry.names(FAULT_KIND)) <= injected
-
-
-def test_every_kind_of_onset_and_profile_is_shown(suite):
     faults = [fault for each in suite for fault in each.scenario.of(FAULTS)]
     onsets = {name for fault in faults for name in fault.start.model_dump(exclude_none=True)}
     profiles = {name for fault in faults if fault.profile for name in fault.profile.model_fields_set}
     assert onsets >= {"time", "progress", "waypoint", "node", "strategy", "phase", "when", "edge", "held"}
     assert profiles == {"ramp", "intermittent", "random"}
-
-
-def test_every_scenario_is_named_as_its_file_and_expects_something(suite):
     assert [each.file.stem for each in suite] == [each.scenario.name for each in suite]
     assert [each.name for each in suite if not each.scenario.of(JUDGE).expect.outcome] == []
 

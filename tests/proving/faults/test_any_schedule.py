@@ -94,7 +94,7 @@ def test_every_fault_of_ports_and_executive_takes_part() -> None:
     assert set(PARAMETERS) == anywhere - KILLS
 
 
-@settings(max_examples=30, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=15, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(schedule=schedules())
 def test_any_schedule_of_faults_leaves_the_rover_safe(
     tmp_path_factory: Any, schedule: list[dict[str, Any]]
