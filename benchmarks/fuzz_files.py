@@ -3,10 +3,10 @@
     python -m benchmarks.fuzz_files --files 500    # seeded; `--from N` goes on, `--keep DIR` keeps the bad
 
 Trees, missions, scenarios, campaigns and project files, each with one to three changes: a key dropped,
-doubled, renamed, moved; a value of another type, size, sign or unit; a cycle of references; broken YAML; another
-encoding; an end in the middle. Each is checked as `longarm check` does; what has no problem is run for a few
-ticks. Bad: an exception that is not LongarmError's, a defect (exit code 3), a problem without a place. Exit 1
-if any was.
+doubled, renamed, moved; a value of another type, size, sign or unit; a cycle of references; broken YAML;
+another encoding; an end in the middle. Each is checked as `longarm check` does; what has no problem is run
+for a few ticks. Bad: an exception that is not LongarmError's, a defect (exit code 3), a problem without a
+place. Exit 1 if any was.
 """
 
 from __future__ import annotations
