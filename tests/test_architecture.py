@@ -42,3 +42,24 @@ def test_the_journeys_pass_through_functions() -> None:
     journeys = MAP.split("\n## Journey")[1:]
     assert len(journeys) == 3
     assert all(len([m for m in NAMED.finditer(journey) if m[2]]) >= 8 for journey in journeys)
+
+
+WRITES = re.compile(r"\.write_(?:text|bytes)\(|\.open\(\"[wax]")
+ALLOWED = {
+    "executive/core/files.py": "writes whole files for all others",
+    "executive/record/recorder.py": "a record grows as the run goes",
+    "executive/record/run_folder.py": "the lock of a folder",
+    "executive/cli/importing/written.py": "drafts of its own, renamed together",
+    "proving/campaign/folder.py": "a journal that grows, and a part that is renamed",
+    "proving/campaign/run.py": "into the folder of a case that has just been made",
+    "proving/minimise/trier.py": "into a temporary folder",
+    "proving/coverage/search.py": "into a temporary folder",
+}
+
+
+def test_nothing_is_written_over_a_good_file_but_whole():
+    """A full disk or a kill in the midst of writing leaves what was there: write beside, rename."""
+    packages = ("executive", "strategies", "perception", "proving", "sim_pybullet", "longarm")
+    files = {path for package in packages for path in (ROOT / package).rglob("*.py")}
+    writing = {str(path.relative_to(ROOT)) for path in files if WRITES.search(path.read_text())}
+    assert writing == set(ALLOWED)

@@ -14,6 +14,7 @@ import click
 
 from executive.cli.catalogue import CatalogueGroup
 from executive.core.errors import DamagedError, LongarmError
+from executive.core.files import write_whole
 from executive.core.interrupts import number_of, raise_when_asked
 from executive.core.registry import Project, in_project, project_file
 
@@ -255,7 +256,7 @@ def show(tree: str, form: str, output: Path | None) -> int:
         drawing = draw(spec, form, strategy_trees(load_strategies()))
     content = drawing if isinstance(drawing, bytes) else drawing.encode()
     if output is not None:
-        output.write_bytes(content)
+        write_whole(output, content)
     else:
         click.echo(content, nl=False)
     return 0

@@ -11,6 +11,7 @@ from typing import Any
 from executive.config.find import INSTALLED
 from executive.config.project import project_for
 from executive.core.errors import LongarmError
+from executive.core.files import write_whole
 from executive.core.registry import PROJECT_FILE, in_project
 from executive.run import schema as schemas
 
@@ -77,7 +78,7 @@ def write_editor_files(folder: Path) -> tuple[Path, ...]:
     made[Path(".vscode", "extensions.json")] = {"recommendations": list(EXTENSIONS)}
     for path, content in made.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+        write_whole(folder / path, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
     return tuple(sorted(made))
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from executive.core.errors import ConfigError, Problem
+from executive.core.files import write_whole
 from executive.record.integrity import SUMS
 
 LOCK = ".running"
@@ -65,7 +66,7 @@ def make_folder(folder: Path) -> None:
 
 
 def write_traceback(folder: Path, defect: BaseException) -> None:
-    (folder / "traceback.txt").write_text("".join(traceback.format_exception(defect)))
+    write_whole(folder / "traceback.txt", "".join(traceback.format_exception(defect)))
 
 
 def unwrite(folder: Path) -> None:

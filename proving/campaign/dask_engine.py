@@ -14,6 +14,7 @@ from typing import Any
 from uuid import uuid4
 
 from executive.core.errors import LongarmError
+from executive.core.files import write_whole
 from proving.engine import Case, CaseClass, Ending
 from proving.engine.server import ForkServer
 from proving.engine.supervisor import ATTEMPTS, run_alone
@@ -93,7 +94,7 @@ def _ending(case: Case, attempt: int, future: Any) -> Ending:
     told, files = future.result()
     for name, content in files.items():
         (case.folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (case.folder / name).write_bytes(content)
+        write_whole(case.folder / name, content)
     return replace(Ending.from_json(told), case=case, attempts=attempt)
 
 

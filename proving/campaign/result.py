@@ -11,6 +11,7 @@ from pathlib import Path
 from pydantic import TypeAdapter, ValidationError
 
 from executive.core.errors import RecordError
+from executive.core.files import write_whole
 from executive.record import RunResult
 
 
@@ -85,4 +86,4 @@ def read_case(path: Path) -> CaseResult:
 
 def write_case(path: Path, result: CaseResult) -> None:
     """Write strictly valid JSON, with a newline at the end."""
-    path.write_text(json.dumps(result.to_json(), indent=2, allow_nan=False) + "\n")
+    write_whole(path, json.dumps(result.to_json(), indent=2, allow_nan=False) + "\n")

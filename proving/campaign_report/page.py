@@ -9,6 +9,7 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
+from executive.core.files import write_whole
 from executive.report.figure import Figure
 from proving.campaign_report import listing
 from proving.campaign_report.alarms import alarm_table, alarms
@@ -38,7 +39,7 @@ def write_campaign_report(folder: Path) -> Path:
     RecordError if the folder is none; whatever is missing inside it is named in the report.
     """
     path = folder / "report.html"
-    path.write_text(render(gather(folder)))
+    write_whole(path, render(gather(folder)))
     return path
 
 

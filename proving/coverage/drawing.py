@@ -7,6 +7,7 @@ from dataclasses import replace
 from html import escape
 from pathlib import Path
 
+from executive.core.files import write_whole
 from executive.report.figure import counted
 from executive.report.show.boxes import Box, Tag, boxes
 from executive.report.show.palette import COVERAGE
@@ -22,9 +23,9 @@ PAINTS = {"success": "success", "running": "running", "halted": "running"}
 def write(coverage: Coverage, file: Path) -> None:
     """One page for all trees; with the suffix .svg the first tree only."""
     if file.suffix == ".svg":
-        file.write_text(_drawing(coverage, next(iter(coverage.universe.trees.values()))))
+        write_whole(file, _drawing(coverage, next(iter(coverage.universe.trees.values()))))
     else:
-        file.write_text(page(coverage))
+        write_whole(file, page(coverage))
 
 
 def page(coverage: Coverage) -> str:

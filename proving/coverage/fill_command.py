@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from executive.core.files import write_whole
 from executive.report.figure import counted
 from proving.coverage.excuses import Excuses, read_excuses
 from proving.coverage.fill import Filled, file_name, text
@@ -78,7 +79,7 @@ def _write(found: Filled, folder: Path) -> dict[Path, Proposal]:
         file, number = folder / f"{file_name(proposal)}.yaml", 2
         while file in files:
             file, number = folder / f"{file_name(proposal)}_{number}.yaml", number + 1
-        file.write_text(text(proposal, file.stem))
+        write_whole(file, text(proposal, file.stem))
         files[file] = proposal
     return files
 

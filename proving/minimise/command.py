@@ -8,6 +8,8 @@ from pathlib import Path
 
 import click
 
+from executive.core.files import write_whole
+
 FILE = click.Path(path_type=Path)
 
 
@@ -50,7 +52,7 @@ def minimise(
         click.echo(f"{case}: this case does not fail; minimise needs one that does", err=True)
         return 1
     file = output or Path(f"{made.before['scenario']}-minimal.yaml")
-    file.write_text(made.text(case))
+    write_whole(file, made.text(case))
     sizes = {noun: {"before": before, "after": after} for noun, before, after in made.sizes()}
     if as_json:
         told = {"failure": str(made.failure), "file": str(file), "runs": made.runs, "sizes": sizes}

@@ -10,6 +10,7 @@ from executive.cli.reference.record import record_page, result_page
 from executive.cli.reference.tree import nodes_page, tree_page
 from executive.config.backends import BACKEND_KIND
 from executive.core import registry
+from executive.core.files import write_whole
 
 MARK = "<!-- Made by `longarm reference`; change the declarations, not this page. -->\n"
 
@@ -34,7 +35,7 @@ def write_pages(folder: Path) -> tuple[Path, ...]:
     folder.mkdir(parents=True, exist_ok=True)
     written = [(folder / name, text) for name, text in pages().items()]
     for path, text in written:
-        path.write_text(text)
+        write_whole(path, text)
     return tuple(path for path, _ in written)
 
 
