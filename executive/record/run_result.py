@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
@@ -16,6 +17,7 @@ from executive.core.files import write_whole
 from executive.record.rows import JudgedRow
 
 SCHEMA = 1
+_BEHIND_INVALID = re.compile(r"the run ended (\w+)$")  # as the runner words it
 
 
 @dataclass(frozen=True)
@@ -132,6 +134,12 @@ class RunResult:
     """None where nobody judged it."""
     resumed_s: tuple[float, ...] = ()
     """When, by mission time, it was cut off and went on."""
+
+    @property
+    def ended_as(self) -> str:
+        """The outcome; of a run that proves nothing, the one to which it came all the same."""
+        behind = _BEHIND_INVALID.search(self.reason or "") if self.outcome == "invalid" else None
+        return behind[1] if behind else self.outcome
 
     def to_json(self) -> dict[str, object]:
         """Plain data in the order of the fields; NaN and infinities, which JSON cannot say, as None."""

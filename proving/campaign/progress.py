@@ -64,6 +64,12 @@ def show_summary(about: dict[str, Any], folder: str) -> None:
             f"({share['confidence']:.0%} interval {low:.1%} to {high:.1%})",
             highlight=False,
         )
+        if untested := share["untested"]:
+            good, all_of_them = share["good"] + share["untested_reached"], share["cases"] + untested
+            beside = f"the {untested} in which a fault never fired"
+            console.print(
+                f"  {good} of {all_of_them} with {beside}, by whether they reached the goal", highlight=False
+            )
     console.print("  " + ", ".join(f"{count} {word}" for word, count in told["verdicts"].items()))
     console.print("  classes: " + ", ".join(f"{count} {name}" for name, count in told["classes"].items()))
     if told["enough"]:

@@ -46,7 +46,7 @@ SCHEMA = pa.schema(
         *(("case", pa.int64()), ("draw", pa.int64()), ("setting", pa.string()), ("seed", pa.int64())),
         *(
             (name, pa.string())
-            for name in ("tier", "verdict", "message", "class", "cause", "outcome", "reason")
+            for name in ("tier", "verdict", "message", "class", "cause", "outcome", "ended_as", "reason")
         ),
         *(("mission_s", pa.float64()), ("digest", pa.string()), ("attempts", pa.int64())),
         *(("waypoints_total", pa.int64()), ("waypoints_reached", pa.int64())),
@@ -82,6 +82,7 @@ def row_of(campaign: str, result: CaseResult) -> dict[str, object]:
         **{name: getattr(case, name) for name in ("draw", "setting", "verdict", "message", "cause")},
         **{name: getattr(case, name) for name in ("attempts", "wall_s", "memory_bytes")},
         **{name: getattr(run, name) for name in ("scenario", "seed", "tier", "outcome", "reason")},
+        "ended_as": run.ended_as,
         **{name: getattr(run, name) for name in ("mission_s", "digest", "wall")},
         **{name: truth[name] for name in (*_TRUTH, "waypoint_errors_m")},
         **{name: getattr(fixes, name) for name in _FIXES},

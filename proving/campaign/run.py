@@ -139,6 +139,7 @@ class _Run:
             wall_s=round(ending.wall_s, 3),
             inside_s=round(sum(result.wall.get(part) or 0.0 for part in INSIDE), 3),
             digest=result.digest,
+            ended_as=result.ended_as,
         )
         self._write(ending, CaseResult(result, _note(drawn, ending, verdict.message, ended)))
         self._folder.keep(ended)

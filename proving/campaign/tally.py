@@ -27,6 +27,8 @@ class Ended:
     wall_s: float
     inside_s: float
     digest: str
+    ended_as: str = ""
+    """The outcome behind `invalid`; else the outcome."""
 
     @property
     def good(self) -> bool:
@@ -70,12 +72,18 @@ class Tally:
         return dict(Counter(case.kind for case in self.ended.values()))
 
     def shares(self, confidence: float = 0.95) -> dict[str, dict[str, Any]]:
-        """For each setting the share of good verdicts with its interval, of the cases that count."""
-        of_setting: dict[str, list[bool]] = {case.setting: [] for _, case in sorted(self.ended.items())}
-        for case in self.ended.values():
-            if case.counts:
-                of_setting[case.setting].append(case.good)
-        return {name: _share(good, confidence) for name, good in of_setting.items()}
+        """For each setting the share of good verdicts with its interval, of the cases that count.
+
+        Beside it `untested`, the cases in which a fault never fired, and how many of them reached the goal.
+        """
+        settings = dict.fromkeys(case.setting for _, case in sorted(self.ended.items()))
+        return {name: self._share(name, confidence) for name in settings}
+
+    def _share(self, setting: str, confidence: float) -> dict[str, Any]:
+        cases = [case for case in self.ended.values() if case.setting == setting]
+        untested = [case.ended_as for case in cases if case.verdict == Word.INVALID]
+        beside = {"untested": len(untested), "untested_reached": untested.count("reached")}
+        return _share([case.good for case in cases if case.counts], confidence) | beside
 
     def outside_share(self) -> float | None:
         """Share of the cases' wall time outside the simulation's step and the executive's tick."""

@@ -61,7 +61,12 @@ def _success(campaign: RecordedCampaign) -> Tile:
         return Tile("success", "–", "no case counts")
     hits = sum(case.passed for case in campaign.counted)
     interval = f"95 % interval {100 * found.low:.1f} to {100 * found.high:.1f} %"
-    return Tile("success", f"{100 * found.value:.1f} %", f"{hits} of {len(campaign.counted)}; {interval}")
+    words = [f"{hits} of {len(campaign.counted)}; {interval}"]
+    untested = [case.result.ended_as for case in campaign.cases if case.outcome == "invalid"]
+    if untested:
+        both = f"{hits + untested.count('reached')} of {len(campaign.counted) + len(untested)}"
+        words.append(f"{both} with those in which a fault never fired")
+    return Tile("success", f"{100 * found.value:.1f} %", "; ".join(words))
 
 
 def _classes(campaign: RecordedCampaign) -> str:

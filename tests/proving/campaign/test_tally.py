@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import pytest
 from scipy.stats import binomtest
 
+from executive.record import RunResult
 from proving.campaign.interval import wilson
 from proving.campaign.shape import StopRule
 from proving.campaign.tally import Ended, Tally
@@ -67,3 +69,18 @@ def test_the_share_outside_counts_only_cases_that_told_it():
     lost = Ended(1, "", 1, "error", "sut", "hang", "error", 60.0, 0.0, "")
     assert Tally({0: ended(0), 1: lost}).outside_share() == pytest.approx(0.25)
     assert Tally({1: lost}).outside_share() is None
+
+
+def test_cases_in_which_a_fault_never_fired_are_counted_beside():
+    tally = Tally()
+    tally.add(ended(0))
+    tally.add(replace(ended(1, "invalid"), outcome="invalid", ended_as="reached"))
+    tally.add(replace(ended(2, "invalid"), outcome="invalid", ended_as="help"))
+    (share,) = tally.shares().values()
+    assert (share["good"], share["cases"], share["untested"], share["untested_reached"]) == (1, 1, 2, 1)
+
+
+def test_an_invalid_run_says_how_it_ended_all_the_same():
+    invalid = RunResult(outcome="invalid", reason="hum never took effect; the run ended safe_hold")
+    assert invalid.ended_as == "safe_hold"
+    assert RunResult(outcome="help", reason="the run ended reached").ended_as == "help"
