@@ -31,8 +31,9 @@ def strange_nodes(source: Source, named: Iterable[Named], tree: TreeSpec) -> Ite
 
 def strange_values(source: Source, named: Iterable[Named], tree: TreeSpec) -> Iterator[Problem]:
     """Names of no value of the tree, its sub-trees and the strategies."""
-    absent = f"the value {{}}, which the tree {tree.name} does not have"
-    return _strangers(source, named, _value_names(tree), absent)
+    named = tuple(named)
+    known = _value_names(tree) if named else set()  # loading every strategy takes long
+    return _strangers(source, named, known, f"the value {{}}, which the tree {tree.name} does not have")
 
 
 def strange_strategies(source: Source, named: Iterable[Named]) -> Iterator[Problem]:

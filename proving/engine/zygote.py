@@ -1,4 +1,4 @@
-"""A process that has imported everything and forks one child per case: a case starts in milliseconds.
+"""A process that has imported what cases need and forks one child per case: a case starts in milliseconds.
 
 Speaks JSON lines over the socket it is given: cases come in, starts and deaths go out. It alone kills its
 children, so that no process number is ever reused under it. When the socket closes, it and they are gone.
@@ -20,12 +20,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from executive.core import registry
 from executive.core.clock import Stopwatch
-from executive.core.errors import LongarmError
-from executive.tree.strategies import load_strategies, strategy_trees
 from proving.engine import child
 from proving.engine.case import Case
+from proving.engine.preload import Preloads
 
 WATCH_PERIOD_S = 0.1
 LAST_WORDS_S = 1.0
@@ -50,8 +48,8 @@ class Living:
 class Zygote:
     """Forks, watches, kills and reaps."""
 
-    def __init__(self, link: socket.socket) -> None:
-        self._link = link
+    def __init__(self, link: socket.socket, preloads: Preloads) -> None:
+        self._link, self._preloads = link, preloads
         self._children: dict[str, Living] = {}
         self._received = b""
         self._woken, waker = socket.socketpair()
@@ -92,6 +90,7 @@ class Zygote:
         return True
 
     def _begin(self, case: Case) -> None:
+        self._load_for(case)
         try:
             pid = os.fork()
         except OSError as error:
@@ -100,6 +99,12 @@ class Zygote:
         if pid == 0:
             self._become(case)
         self._children[case.key] = Living(case, pid, _resident_bytes(pid))
+
+    def _load_for(self, case: Case) -> None:
+        """What fails here is left to the child, which fails alone and says how."""
+        with suppress(Exception):
+            if self._preloads.load_for(case):
+                _share()
 
     def _become(self, case: Case) -> None:
         """The child's whole life; never returns."""
@@ -170,29 +175,23 @@ def _die_with_parent() -> None:
     ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def _preload() -> None:
-    """Import what cases will need; what cannot be loaded is told by the case that asks for it."""
-    for kind in registry.kinds():
-        for entry in registry.every(kind).values():
-            preload = getattr(entry, "preload", None)
-            if preload is not None:
-                preload()
-    with suppress(LongarmError):
-        strategy_trees(load_strategies())
+def _share() -> None:
+    """Leave what has been loaded out of garbage collection: what is shared with the children stays shared."""
+    gc.collect()
+    gc.freeze()
 
 
 def main() -> None:
     """Entry point: the number of the inherited socket is the only argument."""
     link = socket.socket(fileno=int(sys.argv[1]))
     try:
-        _preload()
-        gc.collect()
-        gc.freeze()  # what is shared with the children stays shared
+        preloads = Preloads()
+        _share()
     except BaseException as error:
         told = "".join(traceback.format_exception(error))
         link.sendall(json.dumps({"failed": told}).encode() + b"\n")
         raise
-    Zygote(link).serve()
+    Zygote(link, preloads).serve()
 
 
 if __name__ == "__main__":
