@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
+from executive.core.one_thread import one_thread
 from executive.core.rig import RigCalibration
 from executive.core.types import Array
 from perception.calibration.bundle import Bundle
@@ -38,6 +39,13 @@ def calibrate(
     `priors` replaces prior sigmas of parameters by name. Images that fit nothing are set aside. ValueError
     says what is wrong with a survey, or that it shows nothing.
     """
+    with one_thread():
+        return _found(rig, survey, priors, temperature_k)
+
+
+def _found(
+    rig: RigCalibration, survey: Survey, priors: Mapping[str, float] | None, temperature_k: float
+) -> Calibrated:
     markers, sigmas = len(rig.markers.positions_plc_m), prior_sigmas(priors)
     every = TargetImages.of(survey.checked(markers), markers)
     unknowns = first_guess(rig, survey, every, len(PARAMETERS))
