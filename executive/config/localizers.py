@@ -17,7 +17,7 @@ from executive.core.errors import ConfigError
 from executive.core.ports import Devices, Localizer
 from executive.core.registry import Kind
 from executive.core.rig import Rig
-from executive.core.types import PoseSource
+from executive.core.types import Point, PoseSource
 
 _PLACE = ("localizer",)
 
@@ -52,6 +52,11 @@ def nothing_to_prepare(tell: Callable[[str], None]) -> None:
     """The `prepare` of a localizer that needs nothing made on this machine."""
 
 
+def not_known(rig: Any, place: Point) -> float:
+    """The `best_sigma_m` of a localizer that cannot say."""
+    return 0.0
+
+
 @dataclass(frozen=True)
 class LocalizerSpec:
     """A localizer by name.
@@ -63,7 +68,9 @@ class LocalizerSpec:
 
     `prepare` makes what is made once on a machine (`longarm prepare`, and before a run), and tells each step
     that takes long; it returns at once where that is done. `preload` does what every process would do anew at
-    the first fix, for one that is about to fork many.
+    the first fix, for one that is about to fork many. `best_sigma_m` tells, for a rig and a place, the least
+    standard deviation of position [m] that a fix there can have, 0 where that is not known; `check` warns of
+    tolerances that are finer.
     """
 
     name: str
@@ -77,6 +84,7 @@ class LocalizerSpec:
     expected_markers: Callable[[Any], int] = no_markers
     prepare: Callable[[Callable[[str], None]], None] = nothing_to_prepare
     preload: Callable[[], None] = nothing_to_load
+    best_sigma_m: Callable[[Any, Point], float] = not_known
 
 
 def _broken(spec: LocalizerSpec) -> Iterator[str]:

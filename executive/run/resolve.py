@@ -22,9 +22,12 @@ from executive.config.rig_overrides import rig_from
 from executive.config.source import Place, Source, read
 from executive.config.validate import Problems, guess, listed, parse
 from executive.config.validate import shown as shown_data
+from executive.core.arrival import SIGMAS
 from executive.core.chance import generator
 from executive.core.errors import ConfigError, Problem
 from executive.core.registry import Project, in_project
+from executive.core.rig import Rig
+from executive.core.types import Point
 from executive.pool.known import DEFAULT_POLICY, POLICY_KIND
 from executive.run.instrument import InstrumentSpec, Setting
 from executive.run.instruments import broken_instruments, instruments_there_are
@@ -102,6 +105,8 @@ def _resolve(source: Source, project: Project | None) -> ResolvedScenario:
             of_the_world = _world_problems(source, backend, world, file.mission)
             problems.found.extend(each for each in of_the_world if not each.warning)
             warnings.extend(each for each in of_the_world if each.warning)
+        if localizer is not None and rig is not None and not problems.found:
+            warnings.extend(_too_fine(source, file.mission, localizer, rig))
     problems.check()
     if tree is None or tree_path is None:
         raise ConfigError([source.at(()).problem("got no tree, expected the name of one")])
@@ -212,6 +217,22 @@ def _world_problems(
     found = backend.problems(world, mission.route())
     at = ((source.at(_place_of(problem)), problem) for problem in found)
     return [replace(mark.problem(problem.message), warning=problem.warning) for mark, problem in at]
+
+
+def _too_fine(
+    source: Source, mission: MissionFile, localizer: ChosenLocalizer, rig: Rig
+) -> Iterator[Problem]:
+    """Tolerances that two standard deviations of the best fix there do not fit into."""
+    for index, waypoint in enumerate(mission.waypoints):
+        sigma_m = localizer.spec.best_sigma_m(rig, Point(waypoint.x, waypoint.y))
+        within_m = mission.zone(index)
+        if within_m < SIGMAS * sigma_m:
+            best_mm, within_mm = sigma_m * 1e3, within_m * 1e3
+            message = (
+                f"got a tolerance of {within_mm:.0f} mm where it is found to {best_mm:.0f} mm at best, "
+                f"expected two sigma, {SIGMAS * best_mm:.0f} mm, or more: it may end arrival_uncertain"
+            )
+            yield replace(source.at(("mission", "waypoints", index)).problem(message), warning=True)
 
 
 def _place_of(problem: WorldProblem) -> Place:

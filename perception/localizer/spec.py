@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Annotated
 
@@ -11,9 +12,12 @@ from executive.config.localizers import LocalizerRequest, LocalizerSpec
 from executive.config.validate import Strict
 from executive.core.ports import Localizer
 from executive.core.rig import RigCalibration
+from executive.core.types import Point
 
 MARKERS = "markers"
 PASSIVE = "passive"
+FAR_M = 9.0
+"""Nearer, a fix is good to 3 mm, which no tolerance asks for; and to know that takes a second."""
 
 
 class LedStereoSettings(Strict):
@@ -51,6 +55,15 @@ def _prepare(tell: Callable[[str], None]) -> None:
     prepare(tell)
 
 
+def _best_sigma_m(rig: RigCalibration, place: Point) -> float:
+    if math.hypot(place.x_m, place.y_m) < FAR_M:
+        return 0.0
+
+    from perception.localizer.best_fix import best_sigma_m
+
+    return best_sigma_m(rig, place)
+
+
 LED_STEREO = LocalizerSpec(
     name="led_stereo",
     doc="Active markers in LED difference images of the stereo pair; the rover's outline where none shows.",
@@ -63,4 +76,5 @@ LED_STEREO = LocalizerSpec(
     make=_make,
     prepare=_prepare,
     preload=_preload,
+    best_sigma_m=_best_sigma_m,
 )
