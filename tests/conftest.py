@@ -1,7 +1,7 @@
 """Linear algebra on one thread in every test, as in every run: two workers have two cores.
 
-Threads that wait for each other spin. A singular value decomposition of 600 × 126 took 2.5 s of CPU on two busy
-cores, and 0.01 s on one thread.
+Threads that wait for each other spin. A singular value decomposition of 600 × 126 took 2.5 s of CPU on two
+busy cores, and 0.01 s on one thread.
 """
 
 from __future__ import annotations

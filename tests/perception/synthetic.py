@@ -22,6 +22,7 @@ from tests.perception.sensor.noise import with_noise
 
 FULL_WELL_E, BACKGROUND, READ_E, BITS = 160_000.0, 0.40, 40.0, 10
 GAIN_E = FULL_WELL_E / (2**BITS - 1)
+MOST_PIXELS = 500_000  # that are exposed at once, 4 MB of electrons: small frames many, large ones one by one
 
 
 def noise_counts() -> float:
@@ -64,8 +65,12 @@ def background_e(rng: np.random.Generator, shape: tuple[int, int], texture: floa
 
 def expose(rng: np.random.Generator, expected_e: np.ndarray) -> np.ndarray:
     """A frame (h, w) of what is expected [e-], with a real sensor's noise [counts]."""
-    stack = np.ascontiguousarray(expected_e[None])
-    return with_noise(rng, stack, READ_E, GAIN_E, 2.0**BITS - 1)[0]
+    return _expose_all(rng, np.ascontiguousarray(expected_e[None]))[0]
+
+
+def _expose_all(rng: np.random.Generator, expected_e: np.ndarray) -> np.ndarray:
+    """The same of frames (n, h, w)."""
+    return with_noise(rng, expected_e, READ_E, GAIN_E, 2.0**BITS - 1)
 
 
 def sequence(
@@ -77,14 +82,17 @@ def sequence(
 ) -> np.ndarray:
     """Frames (n, h, w): the ground, lit by `light` per frame, plus the spots of the LEDs that are on."""
     light = np.ones(len(leds)) if light is None else light
+    at_once = max(1, MOST_PIXELS // ground_e.size)
     frames = []
-    for mask, level in zip(leds, light, strict=True):
-        frame = ground_e * level
-        for marker, spot_e in spots_e.items():
-            if mask >> marker & 1:
-                frame = frame + spot_e
-        frames.append(expose(rng, frame))
-    return np.stack(frames)
+    for first in range(0, len(leds), at_once):
+        some = slice(first, first + at_once)
+        expected_e = ground_e * light[some, None, None]
+        for frame_e, mask in zip(expected_e, leds[some], strict=True):
+            for marker, spot_e in spots_e.items():
+                if mask >> marker & 1:
+                    frame_e += spot_e
+        frames.append(_expose_all(rng, expected_e))
+    return np.concatenate(frames)
 
 
 @dataclass(frozen=True)
