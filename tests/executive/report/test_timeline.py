@@ -16,9 +16,9 @@ from executive.report.timeline import timeline
 from tests.executive.record.synthetic import segments
 
 PARTS = st.sampled_from(["sequence", "trek_to", "mission", "recover", "back_off", "loop"])
-LEAVES = st.tuples(st.lists(PARTS, max_size=4), st.integers(0, 60))
+LEAF_SPANS = st.tuples(st.lists(PARTS, max_size=4), st.integers(0, 60))
 PATHS = st.sets(
-    LEAVES.map(lambda leaf: "/".join(["go", *leaf[0], f"leaf_{leaf[1]}"])), min_size=1, max_size=70
+    LEAF_SPANS.map(lambda leaf: "/".join(["go", *leaf[0], f"leaf_{leaf[1]}"])), min_size=1, max_size=70
 )
 
 

@@ -126,7 +126,7 @@ def runs(root: str) -> Iterator[bool | None]:
 
 
 NAMES = st.sampled_from(["x", "y"])
-LEAVES = st.builds("{{reads: {{value: '{{{}}}'}}}}".format, NAMES) | st.builds(
+LEAF_NODES = st.builds("{{reads: {{value: '{{{}}}'}}}}".format, NAMES) | st.builds(
     "{{writes: {{value: '{{{}}}'}}}}".format, NAMES
 )
 
@@ -147,7 +147,7 @@ def _within(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     )
 
 
-TREES = st.recursive(LEAVES, _within, max_leaves=4)
+TREES = st.recursive(LEAF_NODES, _within, max_leaves=4)
 
 
 @settings(max_examples=150, deadline=None)

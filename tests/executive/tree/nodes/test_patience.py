@@ -20,7 +20,7 @@ START = ROUTE[0].start
 RANGE_M = math.hypot(START.x_m, START.y_m)
 AHEAD = Point(START.x_m * (1 + 0.2 / RANGE_M), START.y_m * (1 + 0.2 / RANGE_M))
 ASIDE = ROUTE[0].end
-LEAVES: dict[str, type[Leaf]] = {name: kind.leaf for name, kind in node_types().items() if kind.leaf}
+LEAF_TYPES: dict[str, type[Leaf]] = {name: kind.leaf for name, kind in node_types().items() if kind.leaf}
 
 
 def drive_s(belt_m: float) -> float:
@@ -79,15 +79,15 @@ def silenced() -> tuple[Bench, Silent]:
 def run(bench: Bench, name: str, **values: Any) -> tuple[Outcome[object], int]:
     pose = bench.services.classification.predicted().on(ROUTE[0])
     given = {"pose": pose, "segment": ROUTE[0], **values}
-    ports = {port.name for port in LEAVES[name].ports()}
+    ports = {port.name for port in LEAF_TYPES[name].ports()}
     values = {port: value for port, value in given.items() if port in ports}
-    ended = bench.run(LEAVES[name], at_most=30_000, **values)
+    ended = bench.run(LEAF_TYPES[name], at_most=30_000, **values)
     return ended.outcome, ended.ticks
 
 
 def test_every_leaf_that_takes_time_has_its_patience_in_the_table():
-    own = {name for name, leaf in LEAVES.items() if leaf.__module__.startswith("executive.")}
-    assert {name for name in own if LEAVES[name].takes_time()} == set(WAITS) | NEVER_ENDS
+    own = {name for name, leaf in LEAF_TYPES.items() if leaf.__module__.startswith("executive.")}
+    assert {name for name in own if LEAF_TYPES[name].takes_time()} == set(WAITS) | NEVER_ENDS
 
 
 @pytest.mark.parametrize("name", WAITS)
@@ -96,7 +96,7 @@ def test_a_leaf_gives_up_what_never_answers(name):
     bench, silent = silenced()
     outcome, ticks = run(bench, name, **values)
     assert outcome.reason is reason
-    assert outcome.reason in LEAVES[name].outcomes
+    assert outcome.reason in LEAF_TYPES[name].outcomes
     assert ticks <= longest_s + 2
     assert silent.cancelled == len(silent.asked)
 
@@ -125,6 +125,6 @@ def test_a_call_that_nobody_answers_says_so():
 
 def test_a_look_that_never_ends_is_followed_by_another():
     bench, silent = silenced()
-    ended = bench.run(LEAVES["watch_motion"], at_most=1000)
+    ended = bench.run(LEAF_TYPES["watch_motion"], at_most=1000)
     assert ended.ticks == 1000
     assert len(silent.asked) == silent.cancelled == math.ceil(1000 / (BUDGET_S + PATIENCE_S + 1))
