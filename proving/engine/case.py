@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
+
+from pydantic import TypeAdapter
 
 from executive.record import RUN_FILES
 
@@ -43,7 +44,7 @@ class Case:
     limits: Limits = field(default_factory=Limits)
     cut_ticks: tuple[int, ...] = ()
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Plain data that `from_json` reads back."""
         return asdict(self) | {"file": str(self.file), "folder": str(self.folder)}
 
@@ -53,16 +54,9 @@ class Case:
             (self.folder / name).unlink(missing_ok=True)
 
     @classmethod
-    def from_json(cls, data: dict[str, Any]) -> Case:
+    def from_json(cls, data: object) -> Case:
         """The case that `to_json` wrote."""
-        parts = {
-            "file": Path(data["file"]),
-            "folder": Path(data["folder"]),
-            "overrides": tuple(data["overrides"]),
-            "limits": Limits(**data["limits"]),
-            "cut_ticks": tuple(data.get("cut_ticks", ())),
-        }
-        return cls(**data | parts)
+        return _CASE.validate_python(data)
 
 
 class CaseClass(StrEnum):
@@ -89,11 +83,14 @@ class Ending:
     memory_bytes: int = 0
     attempts: int = 1
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Plain data that `from_json` reads back."""
         return asdict(self) | {"case": self.case.to_json()}
 
     @classmethod
-    def from_json(cls, data: dict[str, Any]) -> Ending:
+    def from_json(cls, data: object) -> Ending:
         """The ending that `to_json` wrote."""
-        return cls(**data | {"case": Case.from_json(data["case"]), "kind": CaseClass(data["kind"])})
+        return _ENDING.validate_python(data)
+
+
+_CASE, _ENDING = TypeAdapter(Case), TypeAdapter(Ending)
