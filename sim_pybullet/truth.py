@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,7 +41,10 @@ TruthSink = Callable[[TruthSample], None]
 
 
 class TruthFile:
-    """Writes samples to `truth.mcap`, or nowhere without a path."""
+    """Writes samples to `truth.mcap`, or nowhere without a path.
+
+    Where the disk takes no more it raises OSError, once: the world must go on, for the rover to come to rest.
+    """
 
     def __init__(self, path: Path | None) -> None:
         self._recorder = TruthRecorder(path) if path is not None else None
@@ -48,7 +52,8 @@ class TruthFile:
     def write(self, sample: TruthSample) -> None:
         """Add one sample."""
         if self._recorder is not None:
-            self._recorder(_event(sample), sample.time_s)
+            with self._given_up_if_full(self._recorder):
+                self._recorder(_event(sample), sample.time_s)
 
     def ground(self, terrain: Terrain, rocks: Sequence[Rock]) -> None:
         """Write the map once: elevation thinned out to what a drawing needs, and the rocks."""
@@ -68,12 +73,23 @@ class TruthFile:
     def flush(self) -> None:
         """Hand what was written to the operating system, so that a kill loses a tick at most."""
         if self._recorder is not None:
-            self._recorder.flush()
+            with self._given_up_if_full(self._recorder):
+                self._recorder.flush()
 
     def close(self) -> None:
         """Complete the file; may be called twice."""
         if self._recorder is not None:
             self._recorder.close()
+
+    @contextmanager
+    def _given_up_if_full(self, recorder: TruthRecorder) -> Iterator[None]:
+        try:
+            yield
+        except OSError:
+            self._recorder = None
+            with suppress(OSError):
+                recorder.close()
+            raise
 
 
 def _event(sample: TruthSample) -> TruthEvent:

@@ -128,7 +128,12 @@ def _written(
 def conclude(
     scenario: ResolvedScenario, folder: Path, end: RunEnd, watch: Stopwatch, with_report: bool
 ) -> Finished:
-    """Judge a run that has ended, and write its result."""
+    """Judge a run that has ended, and write its result.
+
+    One whose record could not be ended has none, as when the disk is full: what ended it is raised.
+    """
+    if isinstance(end.defect, OSError) and History.of(folder / "record.mcap").last(events.Stop) is None:
+        raise end.defect
     if end.defect is not None:
         write_traceback(folder, end.defect)
     try:
