@@ -3,7 +3,7 @@
     python -m benchmarks.ends --out rows.jsonl    # 50 signals, 20 full disks, 20 pairs; goes on where it ends
 
 A signal (SIGTERM, SIGINT, SIGHUP in turn) at a time drawn at random; a disk that takes no more at a size
-drawn at random; two runs begun into one folder at once. Exit 1 if one was not as it should be. Some 8 minutes.
+drawn at random; two runs begun into one folder at once. Exit 1 if one was not as it should be. 8 minutes.
 """
 
 from __future__ import annotations
