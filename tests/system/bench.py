@@ -50,6 +50,8 @@ class Setting:
     pixel_sigma: float = 0.5
     backwards: bool = False
     """Strategies take their turns from the last to the first."""
+    only: str = ""
+    """The one strategy that is tried wherever it fits: soon for the tenth time."""
 
     def text(self) -> str:
         points = [{"x": f"{2.2 + 0.06 * i} m", "y": f"{-0.5 + ASIDE_M[i % 2]} m"} for i in range(STEPS + 1)]
@@ -66,18 +68,21 @@ class Setting:
 
 
 SETTINGS = (
-    Setting(),
     Setting(blind_every=1),
     Setting(blind_every=1, backwards=True),
-    Setting(blind_every=3),
+    Setting(blind_every=2),
     Setting(blind_every=9),  # seldom enough for a back_off to come to its second turn
-    Setting(pixel_sigma=20.0),
+    Setting(blind_every=3, only="turning_slip_compensation"),
+    Setting(blind_every=3, only="cabin_reposing"),
     Setting(pixel_sigma=15.0, blind_every=4),
-    Setting(pixel_sigma=15.0, blind_every=5),
+    Setting(pixel_sigma=15.0, only="back_off"),
+    Setting(pixel_sigma=15.0, blind_every=3, only="back_off"),
+    Setting(pixel_sigma=15.0, blind_every=3, only="fresh_look"),
     Setting("dead_reckoning"),
     Setting("dead_reckoning", blind_every=1),
 )
-"""Together they enter every leaf of the shipped trees and strategies."""
+"""Together they enter every leaf of the shipped trees and strategies, rare ones soon: each run that breaks
+one lasts until then."""
 
 
 @dataclass(frozen=True)
@@ -148,11 +153,11 @@ class Ended:
 class InTurn(Pool):
     """Tries the strategies at hand one after the other, whatever the matter is, but for an overshoot."""
 
-    asked, backwards = 0, False
+    asked, backwards, only = 0, False, ""
 
     def choose(self, situation: Situation, at_hand: Any = None) -> Choice:
         names = [name for name in sorted(self.strategies, reverse=self.backwards) if name in at_hand]
-        name = names[self.asked % len(names)]
+        name = self.only if self.only in names else names[self.asked % len(names)]
         if situation.failure.reason is Reason.OVERSHOOT and "overshoot_avoidance" in names:
             name = "overshoot_avoidance"
         self.asked += 1
@@ -212,7 +217,7 @@ def prepare(setting: Setting, folder: Path, diary: Diary) -> tuple[Run, BuiltTre
     localizer = Blinking(backend.devices, backend.rig, backend.clock)
     localizer.every = setting.blind_every
     pool = InTurn(strategies(), journal.strategy)
-    pool.backwards = setting.backwards
+    pool.backwards, pool.only = setting.backwards, setting.only
     services = Services(
         clock=backend.clock,
         devices=backend.devices,

@@ -314,8 +314,9 @@ def test_a_fix_carries_what_both_cameras_saw():
 
 def test_a_failure_carries_what_was_looked_at():
     r = robot(hidden={0, 1, 2, 3})
-    outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted(), budget_s=300.0)))
+    outcome = r.run(localizer(r).locate(LocaliseRequest(Quality.PRECISE, r.predicted(), budget_s=100.0)))
     assert outcome.reason is Reason.NOT_SEEN
+    assert "no outline sought" in outcome.detail
     assert outcome.value.pose is None
     assert len(outcome.value.views) == 2
     assert np.isnan(outcome.value.views[0].reprojected_px).all()
