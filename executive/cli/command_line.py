@@ -244,7 +244,7 @@ def show(tree: str, form: str, output: Path | None) -> int:
     from executive.report.show import FORMATS, draw
     from executive.run import app
     from executive.tree.load import load_tree
-    from executive.tree.strategies import load_strategies, strategy_trees
+    from executive.tree.strategies import usable_trees
 
     if form not in FORMATS:
         raise click.UsageError(f'got "{form}", expected {listed(FORMATS)}{guess(form, FORMATS)}')
@@ -253,7 +253,7 @@ def show(tree: str, form: str, output: Path | None) -> int:
         drawing = app.draw_run(path, form)
     else:
         spec = load_tree(path if path.is_file() or "/" in tree else tree)
-        drawing = draw(spec, form, strategy_trees(load_strategies()))
+        drawing = draw(spec, form, usable_trees())
     content = drawing if isinstance(drawing, bytes) else drawing.encode()
     if output is not None:
         write_whole(output, content)

@@ -42,7 +42,7 @@ from executive.run.recording import Recording, fresh
 from executive.run.resolve import resolve_scenario
 from executive.run.resolved import ResolvedScenario
 from executive.run.runner import RunEnd, ended_by, execute, interrupted
-from executive.tree.strategies import load_strategies, strategy_trees
+from executive.tree.strategies import load_strategies, usable_trees
 
 
 @dataclass(frozen=True)
@@ -230,7 +230,7 @@ def draw_run(folder: Path, form: str) -> str | bytes:
         raise RecordError(f"{folder}: got no scenario.yaml, expected a run folder")
     scenario = resolve_scenario(folder / "scenario.yaml")
     with in_project(scenario.project):
-        return draw(scenario.tree, form, strategy_trees(load_strategies()), last_outcomes(folder))
+        return draw(scenario.tree, form, usable_trees(), last_outcomes(folder))
 
 
 def last_outcomes(folder: Path) -> dict[str, str]:

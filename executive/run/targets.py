@@ -11,7 +11,7 @@ from executive.core.errors import Problem
 from executive.pool.kind import STRATEGY_KIND
 from executive.tree.addresses import matches
 from executive.tree.spec import TreeSpec, walk
-from executive.tree.strategies import load_strategies, strategy_trees
+from executive.tree.strategies import usable_trees
 
 Named = tuple[Place, str]
 """A name that a file gives, and where."""
@@ -43,7 +43,7 @@ def strange_strategies(source: Source, named: Iterable[Named]) -> Iterator[Probl
 
 def _node_paths(tree: TreeSpec) -> Iterator[str]:
     """The paths that nodes have in a run."""
-    strategies = strategy_trees(load_strategies())
+    strategies = usable_trees()
     inside = [f"{n}/{p.partition('/')[2]}" for n, each in strategies.items() for p, _ in walk(each)]
     for path, node in walk(tree):
         yield path
@@ -53,7 +53,7 @@ def _node_paths(tree: TreeSpec) -> Iterator[str]:
 
 def _value_names(tree: TreeSpec) -> set[str]:
     """What the values of a tree and of all its sub-trees are called, and of every strategy's."""
-    trees = (tree, *strategy_trees(load_strategies()).values())
+    trees = (tree, *usable_trees().values())
     inner = (node.tree for each in trees for _, node in walk(each) if node.tree is not None)
     return {name for each in (*trees, *inner) for name in each.values}
 

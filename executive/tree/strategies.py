@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 from executive.config.registered import registered
 from executive.config.source import Mark
@@ -19,6 +20,15 @@ def load_strategies() -> tuple[Strategy, ...]:
     """Every strategy that can be used, by name; the others are left out (`broken_strategies`)."""
     usable = registry.every(STRATEGY_KIND).values()
     return tuple(strategy for strategy in usable if not _problems(strategy))
+
+
+def usable_trees() -> dict[str, TreeSpec]:
+    """The own sub-tree of every strategy that can be used, by the strategy's name; each is loaded once."""
+    trees: dict[str, TreeSpec] = {}
+    for strategy in registry.every(STRATEGY_KIND).values():
+        with suppress(ConfigError):  # `broken_strategies` tells
+            trees[strategy.name] = load_tree(strategy.tree)
+    return trees
 
 
 def broken_strategies() -> tuple[Broken, ...]:

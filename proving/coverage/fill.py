@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from executive.run import ResolvedScenario
-from executive.tree.strategies import load_strategies, strategy_trees
+from executive.tree.strategies import load_strategies, usable_trees
 from proving.coverage.excuses import Excuses
 from proving.coverage.items import Item
 from proving.coverage.search import Proposal, Search
@@ -90,7 +90,7 @@ def file_name(proposal: Proposal) -> str:
 
 
 def _universe(suite: list[ResolvedScenario]) -> Universe:
-    universe, answers = Universe(), strategy_trees(load_strategies())
+    universe, answers = Universe(), usable_trees()
     for scenario in suite:
         universe.add(scenario.tree, answers)
     return universe

@@ -15,7 +15,7 @@ from executive.core.registry import Project, current_project, in_project
 from executive.core.types import Call, Reason
 from executive.record import History, events, leading
 from executive.tree.load import load_tree
-from executive.tree.strategies import load_strategies, strategy_trees
+from executive.tree.strategies import usable_trees
 from proving.coverage.items import Item
 from proving.coverage.universe import HALTED, Universe
 from proving.inject.entries import RESERVED
@@ -129,7 +129,7 @@ def read_runs(folders: list[Path]) -> tuple[Universe, Seen]:
         if reference not in known:
             known.add(reference)
             with in_project(_project_of(record.parent, scenario)):
-                universe.add(load_tree(reference), strategy_trees(load_strategies()))
+                universe.add(load_tree(reference), usable_trees())
         seen.add(str(record.parent), history, universe)
     return universe, seen
 

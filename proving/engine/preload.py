@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from contextlib import suppress
 
 from executive.core import registry
-from executive.core.errors import LongarmError
-from executive.tree.strategies import load_strategies, strategy_trees
+from executive.tree.strategies import usable_trees
 from proving.engine.case import Case
 
 
@@ -23,8 +21,7 @@ class Preloads:
             for name, entry in registry.every(kind).items()
             if hasattr(entry, "preload")
         }
-        with suppress(LongarmError):
-            strategy_trees(load_strategies())
+        usable_trees()
 
     def load_for(self, case: Case) -> bool:
         """Load what the case will need; whether anything was loaded."""
