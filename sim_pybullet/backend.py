@@ -52,10 +52,15 @@ class SimBackend:
         self.clock = Clock(request.tick_s)
         self._watch = Stopwatch()
         self._truth = TruthFile(request.truth_path)
+        try:
+            self._make(request, request.world, make)
+        except BaseException:  # also a signal: who makes a backend cannot close one that was never made
+            self._truth.close()
+            raise
+
+    def _make(self, request: BackendRequest, world: WorldConfig, make: CameraMaker) -> None:
         with self._watch.measure("physics"):
-            self.world = World(
-                request.world, request.route, request.seed, self.rig, self.clock, self._truth.write
-            )
+            self.world = World(world, request.route, request.seed, self.rig, self.clock, self._truth.write)
         near = area_of((*request.route, _from_lander(request.route)), MAP_MARGIN_M)
         self._truth.ground(self.world.terrain.crop(near.low_site_m, near.high_site_m), self.world.rocks)
         self._cameras = make(self.world, self.clock, self.rig, self._watch)

@@ -10,13 +10,16 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from executive.cli import invoke
 from executive.core.errors import LongarmError
+from executive.core.interrupts import Interrupted
 from executive.record.reader import is_complete, read_record
 from executive.record.verify import verify
+from executive.run.app import RunOptions, run
 from tests.system.bench import Setting
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -127,3 +130,13 @@ def test_of_two_runs_into_one_folder_the_second_is_refused(scenario: Path, tmp_p
     assert second.returncode == 2
     assert "--out:1:1: got" in told
     assert verify(out).problems == ()
+
+
+def test_a_signal_while_the_world_is_made_leaves_whole_records(tmp_path: Path, monkeypatch: Any) -> None:
+    def interrupted(*args: Any) -> None:
+        raise Interrupted(signal.SIGTERM)
+
+    monkeypatch.setattr("sim_pybullet.backend.World", interrupted)
+    options = RunOptions(out=tmp_path / "run", tier="geometric", bar=False, report=False)
+    assert run(ROOT / "scenarios" / "clean_hop.yaml", options).exit_code == 128 + signal.SIGTERM
+    assert verify(tmp_path / "run").problems == ()
