@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -39,6 +40,23 @@ def raise_when_asked() -> None:
 
     for number in ENDING:
         signal.signal(number, asked)
+    sys.unraisablehook = _swallowed
+
+
+def raise_swallowed() -> None:
+    """Raise what was asked where it could not be raised, as in a call from a library's machine code."""
+    if _SWALLOWED:
+        raise _SWALLOWED.pop()
+
+
+_SWALLOWED: list[Interrupted] = []
+
+
+def _swallowed(unraisable: sys.UnraisableHookArgs) -> None:
+    if isinstance(unraisable.exc_value, Interrupted):
+        _SWALLOWED.append(unraisable.exc_value)  # nothing is shown; the run ends at its next tick
+    else:
+        sys.__unraisablehook__(unraisable)
 
 
 @contextmanager

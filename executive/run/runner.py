@@ -12,7 +12,7 @@ from py_trees.common import Status
 from executive.core.clock import Stopwatch
 from executive.core.devices import DRIVE
 from executive.core.errors import NodeRaised
-from executive.core.interrupts import number_of, words_of
+from executive.core.interrupts import number_of, raise_swallowed, words_of
 from executive.core.pause import pausable
 from executive.core.ports import Backend, Devices
 from executive.core.types import Outcome, Reason
@@ -91,6 +91,7 @@ def _loop(run: Run, changes: _Changes, wait_while_paused: Callable[[], None]) ->
     while True:
         _tick(run, changes, run.root)
         wait_while_paused()
+        raise_swallowed()
         if run.root.status is not Status.RUNNING:
             return _ended(run)
         if _time_is_up(run):

@@ -140,3 +140,21 @@ def test_a_signal_while_the_world_is_made_leaves_whole_records(tmp_path: Path, m
     options = RunOptions(out=tmp_path / "run", tier="geometric", bar=False, report=False)
     assert run(ROOT / "scenarios" / "clean_hop.yaml", options).exit_code == 128 + signal.SIGTERM
     assert verify(tmp_path / "run").problems == ()
+
+
+def test_a_signal_in_a_call_that_cannot_raise_is_raised_later() -> None:
+    code = """
+import signal, sys
+from executive.core import interrupts
+interrupts.raise_when_asked()
+class Callback:
+    def __del__(self):
+        signal.raise_signal(signal.SIGTERM)
+Callback()
+try:
+    interrupts.raise_swallowed()
+except KeyboardInterrupt as asked:
+    sys.exit(interrupts.number_of(asked))
+"""
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (signal.SIGTERM, "")
