@@ -33,11 +33,8 @@ _FIGURES = (
 )
 
 
-def write_campaign_report(folder: Path) -> Path:
-    """Write `report.html` into a campaign folder from what lies there, and return its path.
-
-    RecordError if the folder is none; whatever is missing inside it is named in the report.
-    """
+def write_page(folder: Path) -> Path:
+    """Write `report.html`, as `write_campaign_report` says, and return its path."""
     path = folder / "report.html"
     write_whole(path, render(gather(folder)))
     return path
