@@ -174,7 +174,7 @@ class Mutated(importlib.abc.MetaPathFinder):
 
         class Loader(importlib.machinery.SourceFileLoader):
             def get_code(self, fullname: str) -> CodeType:
-                return compile(text, file, "exec")  # type: ignore[no-any-return]
+                return compile(text, file, "exec")
 
         return importlib.util.spec_from_file_location(name, file, loader=Loader(name, file))
 
