@@ -64,3 +64,10 @@ def test_a_drive_that_does_not_end_is_found_in_the_end():
 
 def test_a_drive_of_nothing_has_no_problem():
     assert first_problem(Belts(0.0, 0.0), lambda t: (0.0, 0.0), until_s=5) is None
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.24, True), (0.26, False)])
+def test_a_belt_that_makes_less_than_a_quarter_of_its_way_is_stalled(share, found):
+    """A weak motor makes more; a belt that makes less turns the rover off its way."""
+    problem = first_problem(Belts(0.1, 0.1), lambda t: (straight(t, share), straight(t)), until_s=60)
+    assert (problem is not None) is found
