@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from executive.config.source import Mark, Place, Source, read_text
 from executive.core.errors import ConfigError
 
@@ -24,12 +26,11 @@ def override(source: Source, text: str, number: int, option: str = "--set") -> S
         message = f'got "{key}", expected a key of the scenario'
         raise ConfigError([Mark(option, number, 1).problem(message)]) from None
     keys = {place[:length]: Mark(option, number, 1) for length in range(1, len(place) + 1)}
-    return Source(
-        changed.data,
-        dict.fromkeys(keys.keys() - changed.values.keys(), Mark(option, number, 1)) | dict(changed.values),
-        keys | dict(changed.keys) | {place: Mark(option, number, 1)},
-        changed.folders,
-        changed.problems,
+    start = Mark(option, number, 1)
+    return replace(
+        changed,
+        values=dict.fromkeys(keys.keys() - changed.values.keys(), start) | dict(changed.values),
+        keys=keys | dict(changed.keys) | {place: start},
     )
 
 
@@ -58,4 +59,5 @@ def _shifted(source: Source, option: str, number: int, column: int) -> Source:
         {place: move(mark) for place, mark in source.values.items()},
         {place: move(mark) for place, mark in source.keys.items()},
         problems=tuple(moved),
+        spoilt=frozenset(map(move, source.spoilt)),
     )

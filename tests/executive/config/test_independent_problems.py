@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 import yaml
 
+from executive.core.errors import ConfigError
 from executive.run.check import check_file
+from executive.run.resolve import resolve_scenario
 
 SCENARIO = {
     "scenario": "two",
@@ -120,3 +122,21 @@ def test_a_number_that_is_none_is_told_once_at_its_place(tmp_path, text, place):
     (problem,) = check_file(tmp_path / "file.yaml")
     line = next(number for number, line in enumerate(data.splitlines(), 1) if text in line)
     assert (problem.line, problem.message) == (line, f"got {text}, expected a finite number")
+
+
+@pytest.mark.parametrize("overrides", [(), ("seed=3",), ("world.mast_height=1 m",)])
+def test_a_run_of_a_scenario_without_its_mission_says_so_once(tmp_path, overrides):
+    file = tmp_path / "file.yaml"
+    file.write_text(yaml.safe_dump(SCENARIO | {"mission": "no_such_mission"}, sort_keys=False))
+    with pytest.raises(ConfigError) as refused:
+        resolve_scenario(file, 1, "geometric", overrides)
+    assert len(refused.value.problems) == 1
+
+
+@pytest.mark.parametrize("value", [".nan", "1e400"])
+def test_an_override_that_is_no_number_is_told_once(tmp_path, value):
+    file = tmp_path / "file.yaml"
+    file.write_text(yaml.safe_dump(SCENARIO, sort_keys=False))
+    with pytest.raises(ConfigError) as refused:
+        resolve_scenario(file, overrides=(f"time_limit={value}",))
+    assert len(refused.value.problems) == 1
