@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -24,6 +24,8 @@ class Recording(Generic[R]):
     recorder: R
     truth_path: Path
     cuts: Cuts
+    settle: Callable[[], None] = lambda: None
+    """Put the truth in its place, where it was not there yet as the record took its own."""
 
 
 def fresh(folder: Path, cut_ticks: Collection[int] = ()) -> Recording[Recorder]:
@@ -41,4 +43,4 @@ def continued(folder: Path) -> Recording[Continuation]:
 
     ticks = cut_ticks(record)
     recorder = Continuation(record, take_place)
-    return Recording(recorder, beside(truth), Cuts(ticks, lambda: not recorder.behind))
+    return Recording(recorder, beside(truth), Cuts(ticks, lambda: not recorder.behind), take_place)

@@ -81,6 +81,8 @@ def _resumed(scenario: ResolvedScenario, folder: Path, bar: bool) -> app.Finishe
     try:
         end = app.record_run(scenario, load_strategies(), text, watch, recording, bar)
     finally:
+        if not recording.recorder.behind:
+            recording.settle()
         for name in (RECORD, TRUTH):
             beside(folder / name).unlink(missing_ok=True)
     if recording.recorder.behind:

@@ -6,6 +6,7 @@ import bisect
 import os
 import shutil
 import signal
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -73,6 +74,13 @@ def while_driving(twin: Path) -> int:
     return bisect.bisect_left(range(len(whole)), drive.time_s + 20.0, key=end_s)
 
 
+def count_of(twin: Path, size: int) -> int:
+    """How many messages the first `size` bytes of the record hold."""
+    part = twin.parent / "part.mcap"
+    part.write_bytes((twin / "record.mcap").read_bytes()[:size])
+    return len(list(read_record(part)))
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_a_run_cut_off_at_any_byte_goes_on_to_the_same_end(twin, tmp_path, seed):
     size = (twin / "record.mcap").stat().st_size
@@ -98,6 +106,15 @@ def test_a_rover_that_moved_stops_and_is_looked_at_before_it_drives_on(twin, tmp
     assert [at.event.verb for at in commands[:2]] == ["stop", "drive"]
     assert commands[0].time_s <= look[1].time_s <= commands[1].time_s
     assert began < len(messages(folder))
+
+
+def test_a_run_killed_before_there_was_a_world_has_its_truth_in_the_end(twin, tmp_path):
+    folder = killed(
+        twin, tmp_path / "run", bisect.bisect_left(range(100_000), 2, key=partial(count_of, twin))
+    )
+    assert {message.time_s for message in messages(folder)} == {0.0}
+    assert resume(folder, bar=False).result.truth.final_error_m is not None
+    assert not verify(folder).problems
 
 
 def test_a_torn_last_block_is_left_out(twin, tmp_path):
