@@ -1,23 +1,32 @@
 """The runs of the search for unsafe evidence: every such fault, for good and for a while, by seed.
 
-A seed draws when the fault begins, and how long it lasts where it ends. The durations are those of one look
-to several remedies, so that many end while a remedy is under way.
+A seed draws when the fault begins, how severe it is, and how long it lasts where it ends. The durations are
+those of one look to several remedies, so that many end while a remedy is under way.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import yaml
 
+from benchmarks.evidence_parameters import drawn
 from executive.core.chance import generator
 from executive.run.fault import FaultSpec, every_fault
 
 CATEGORIES = ("estimation", "tracks", "cameras", "head", "link")
 """Encoders are those of the tracks and of the head."""
+
+COMPANIONS: dict[str, dict[str, object]] = {
+    "arm_locked": {"led_off": {"markers": [0, 1, 2, 3]}},
+    "cabin_locked": {"led_off": {"markers": [0, 1, 2, 3]}},
+    "link": {"pose_nan": {}},
+}
+"""What begins with a fault, by its name or category, that shows only once something else is wrong."""
 
 FIRST_TRAVERSE = Path(__file__).parents[1] / "missions" / "first_traverse.yaml"
 TIER = "geometric"
@@ -42,47 +51,44 @@ MISSIONS: dict[str, object] = {
 
 @dataclass(frozen=True)
 class EvidenceCase:
-    """One run, all but its seed by name."""
+    """One run: all that is drawn follows from these four."""
 
     fault: str
     extent: str
     mission: str
     seed: int
-    parameters: dict[str, object] = field(default_factory=dict)
 
     @property
     def key(self) -> str:
         """What tells it apart, and the same in every process."""
-        told = "".join(f" {name}={value}" for name, value in self.parameters.items())
-        return f"{self.fault}{told}/{self.extent}/{self.mission}/{self.seed}"
+        return f"{self.fault}/{self.extent}/{self.mission}/{self.seed}"
 
     def scenario(self) -> str:
         """The scenario file."""
+        spec = next(spec for spec in faults() if spec.name == self.fault)
         chance = generator(self.seed, f"evidence {self.key}")
-        entry: dict[str, object] = {self.fault: self.parameters}
-        entry["from"] = {"progress": f"{chance.uniform(*PROGRESS):.3f}"}
+        onset = f"{chance.uniform(*PROGRESS):.3f}"
+        entry: dict[str, object] = {self.fault: drawn(spec, self.seed, chance), "from": {"progress": onset}}
         if self.extent == "transient":
             lasts_s = math.exp(chance.uniform(*map(math.log, LASTS_S)))
             entry["for"] = f"{lasts_s:.0f} s"
-        return str(
-            yaml.safe_dump(
-                {
-                    "scenario": f"{self.fault}_{self.extent}_{self.mission}",
-                    "mission": MISSIONS[self.mission],
-                    "tier": TIER,
-                    "seed": 1000 + self.seed,
-                    "time_limit": "6 h",
-                    "faults": [entry],
-                },
-                sort_keys=False,
-            )
-        )
+        companion = COMPANIONS.get(spec.name) or COMPANIONS.get(spec.category)
+        scenario = {
+            "scenario": f"{self.fault}_{self.extent}_{self.mission}",
+            "mission": MISSIONS[self.mission],
+            "tier": TIER,
+            "seed": 1000 + self.seed,
+            "time_limit": "6 h",
+            "faults": [entry, *([companion | {"from": {"progress": onset}}] if companion else [])],
+        }
+        return str(yaml.safe_dump(scenario, sort_keys=False))
 
 
-def faults() -> list[FaultSpec]:
+@cache
+def faults() -> tuple[FaultSpec, ...]:
     """The faults of these categories that can act in the geometric tier, by category."""
     found = [spec for spec in every_fault() if spec.category in CATEGORIES and _acts(spec)]
-    return sorted(found, key=lambda spec: (CATEGORIES.index(spec.category), spec.name))
+    return tuple(sorted(found, key=lambda spec: (CATEGORIES.index(spec.category), spec.name)))
 
 
 def _acts(spec: FaultSpec) -> bool:
@@ -100,9 +106,4 @@ def cases(
                 for extent in extents:
                     if extent == "transient" and spec.lasting:
                         continue  # it cannot be taken back
-                    for parameters in _variants(spec.name):
-                        yield EvidenceCase(spec.name, extent, mission, seed, parameters)
-
-
-def _variants(fault: str) -> list[dict[str, object]]:
-    return [{}, {"restamped": True}] if fault == "pose_stale" else [{}]
+                    yield EvidenceCase(spec.name, extent, mission, seed)

@@ -48,7 +48,7 @@ def table(rows: Sequence[Row]) -> str:
     """Lines for people: a line a fault and extent, all together, then every run that was unsafe or broke."""
     groups: dict[str, list[Row]] = {}
     for row in rows:
-        groups.setdefault(f"{row.key.split('/')[0]}, {row.extent}", []).append(row)
+        groups.setdefault(f"{row.fault}, {row.extent}", []).append(row)
     head = f"{'fault':38} {'runs':>5} {'fired':>5} {'mid':>4} {'unsafe':>6} {'95 % below':>10} {'false':>5}"
     lines = [f"{head} {'nearest':>8}  ended"]
     lines += [_line(name, group) for name, group in sorted(groups.items())]
